@@ -119,6 +119,7 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   const Result<std::string> machine = ParseMachineName(hello.machine());
   if (!machine) return machine.error();
   const std::lock_guard joining(joining_);
+  LookAtMemory();  // what came while nobody had a machine is in what is sent below
   const Result<Taken> taken = Take(hello, *machine);
   if (!taken) return taken.error();
   const HostPointer line_before = Find(*machine);

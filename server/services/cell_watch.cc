@@ -84,7 +84,6 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
     }
     if (!*made) return Next::kNothing;
     if (message.has_bookmark()) last_bookmark_ = needs_.clock();
-    WakeAt(last_bookmark_ + needs_.bookmark_interval);
     if (bytes.Length() == 0) {  // else it is a piece of the log
       message.set_sequence(cursor_);
       bytes = BytesOf(message);
@@ -153,7 +152,6 @@ class CellWatch final : public PullStream<grpc::ByteBuffer>, public WatchRegistr
     message.set_watch_id(watch_id_);
     if (!request_.has_after_sequence()) {
       if (const Status now = BeginNow(); !now) return now.error();
-      if (told_.empty()) return false;
       told_.front().snapshot_due = false;
       return MakeSnapshot(told_.front(), message);
     }

@@ -182,7 +182,7 @@ void JobService::ResumeAtStep(const v1::DecideInterruptedRequest& request,
         response.set_job(name);
         end(grpc::Status::OK);
       };
-      runs_.BeginByPerson(id ? *id : 0, order, answered);
+      runs_.BeginByPerson(*id, order, answered);
     });
   };
   book_.Again(request.name(), caller, request.request_id(), true, made);

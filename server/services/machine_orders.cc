@@ -19,7 +19,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::chrono::seconds kBegins{10};  // an enabled machine is heard of by then
 constexpr std::chrono::milliseconds kBetweenLooks{10};
 constexpr std::size_t kComputerMax = 253;  // of the name of a host, RFC 1035
 
@@ -395,7 +394,7 @@ grpc::Status MachineService::Enable(const std::string& machine, const std::strin
 }
 
 void MachineService::AwaitLife(const std::string& machine) {
-  const auto until = std::chrono::steady_clock::now() + kBegins;
+  const auto until = std::chrono::steady_clock::now() + live_.patience;
   for (;;) {
     const auto now = live_.hosts->StatusOf(machine);
     const bool begins = !now || now->state() == v1::MACHINE_STATE_STARTING ||
@@ -428,7 +427,7 @@ Status MachineService::EndHost(const std::string& machine, const std::string& wh
   live_.processes->Disable(machine);
   live_.hosts->ClearOff(machine);
   live_.hosts->End(machine, why);
-  const auto until = std::chrono::steady_clock::now() + kBegins;
+  const auto until = std::chrono::steady_clock::now() + live_.patience;
   while (live_.hosts->IsHosted(machine) && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(kBetweenLooks);
   if (live_.hosts->IsHosted(machine)) live_.hosts->Forget(machine);
@@ -498,7 +497,7 @@ grpc::Status MachineService::GiveTo(const v1::TakeMachineRequest& request,
   };
   if (is_there()) return TellStatus(*machine, status);
   live_.hosts->GiveTo(*machine, request.computer(), caller, request.reason());
-  const auto until = std::chrono::steady_clock::now() + kBegins;
+  const auto until = std::chrono::steady_clock::now() + live_.patience;
   while (!is_there()) {
     if (std::chrono::steady_clock::now() >= until)
       return ToGrpcStatus(

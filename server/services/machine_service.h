@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <utility>
 
 #include "rmlcell/v1/machine.grpc.pb.h"
@@ -24,6 +25,8 @@ class MachineService final : public v1::MachineService::CallbackService {
     HostProcesses* processes = nullptr;
     RunQueue* runs = nullptr;
     bool by_default = false;  // where the record of a machine does not say so
+    // An enabled machine is heard of by then, and one whose host was told to end is gone.
+    std::chrono::milliseconds patience = std::chrono::seconds(10);
   };
   MachineService(CallNeeds needs, MachineWatchNeeds watch, Live live)
       : needs_(needs),
@@ -188,7 +191,7 @@ class MachineService final : public v1::MachineService::CallbackService {
                        v1::MachineStatus& status);
   grpc::Status GiveTo(const v1::TakeMachineRequest& request, const std::string& caller,
                       v1::MachineStatus& status);
-  void AwaitLife(const std::string& machine);  // of one that begins, at most kBegins
+  void AwaitLife(const std::string& machine);  // of one that begins
   Status KeepEnabled(const std::string& machine, bool enabled, const std::string& caller);
   // It comes to rest and has no host any more. Error: CellMachineState, a run is open.
   Status EndHost(const std::string& machine, const std::string& why);

@@ -25,7 +25,6 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
 
  private:
   void OnReadDone(bool ok) override {
-    if (finished_) return;
     if (const Status good = ok ? upload_.Add(message_) : upload_.End(); !good)
       return End(ToGrpcStatus(good.error()));
     if (ok) {
@@ -55,7 +54,6 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   }
 
   void End(const grpc::Status& status) {
-    finished_ = true;
     LogCall(kMethod, caller_, status, std::chrono::steady_clock::now() - begin_);
     Finish(status);
   }
@@ -70,7 +68,6 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   v1::UploadProgramRequest message_;
   ProgramUpload upload_;
-  bool finished_ = false;
 };
 
 // What is sent for SubmitJob: each chunk goes to the store before the next one is read.

@@ -52,7 +52,6 @@ class Import final : public grpc::ServerReadReactor<v1::ImportProjectRequest> {
 
  private:
   void OnReadDone(bool ok) override {
-    if (finished_) return;
     if (!ok) {
       const auto store = [this] {
         EndWhereThrown(
@@ -95,7 +94,6 @@ class Import final : public grpc::ServerReadReactor<v1::ImportProjectRequest> {
   }
 
   void End(const grpc::Status& status) {
-    finished_ = true;
     LogCall(kMethod, caller_, status, std::chrono::steady_clock::now() - begin_);
     Finish(status);
   }
@@ -111,7 +109,6 @@ class Import final : public grpc::ServerReadReactor<v1::ImportProjectRequest> {
   v1::ImportProjectRequest message_;
   std::string project_id_;
   std::string archive_;
-  bool finished_ = false;
 };
 
 }  // namespace

@@ -421,8 +421,7 @@ class HttpSession : public Connection,
       Arm(options_.linger_timeout);  // it may have left altogether, which looks the same
       return;
     }
-    if (size < 0)
-      return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? Watch() : Gone();
+    if (size < 0) return errno == EAGAIN ? Watch() : Gone();
     // The next request is there already, and hides the end of the connection behind it.
     pipelined_ = true;
     AwaitQuiet();

@@ -39,8 +39,7 @@ void RunAndReturn(const Run& run, const std::shared_ptr<Connection>& connection,
     auto value = std::make_shared<std::optional<Value>>();
     try {
       value->emplace(work());
-    } catch (const std::exception&) {
-      value->reset();
+    } catch (const std::exception&) {  // there is no value
     }
     connection->Post([value, then] { then(std::move(*value)); });
   });
@@ -107,13 +106,13 @@ class Download : public Exchange, public std::enable_shared_from_this<Download> 
   }
 
   void TakeResource(std::optional<Result<Resource>> found) {
+    if (found && *found) resource_ = **std::move(found);  // also for nobody: it is closed elsewhere
     if (!connection_) return;
     if (!found || !*found) {
       std::exchange(connection_, nullptr)
           ->Send(ErrorAnswer(found ? FromError(found->error()) : Thrown()));
       return;
     }
-    resource_ = **std::move(found);
     HttpResponse head = Head();
     const bool known = !resource_.etag.empty() && EtagMatches(if_none_match_, resource_.etag);
     if (known) {
@@ -203,9 +202,9 @@ class Upload : public Exchange, public std::enable_shared_from_this<Upload> {
         gateway_.run_blocking, connection_,
         [self] { return self->gateway_.resources->BeginUpload(self->header_, self->caller_); },
         [self](std::optional<Result<Sink>> sink) {
+          if (sink && *sink) self->sink_ = **std::move(sink);  // likewise
           if (!self->connection_) return;
           if (!sink || !*sink) return self->Fail(sink ? FromError(sink->error()) : Thrown());
-          self->sink_ = **std::move(sink);
           self->connection_->ReadBody();
         });
   }

@@ -46,7 +46,6 @@ void ChangeCounts::BeforeCommit() {
 }
 
 void ChangeCounts::AfterCommit() {
-  BeforeCommit();  // nobody may have said so
   ForTouched([](Count& count) {
     if (count % 2 == 1) ++count;
   });

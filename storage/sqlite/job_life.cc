@@ -230,7 +230,6 @@ Result<LeasedJob> LeaseJob(WriteContext& context, std::int64_t id, const JobRequ
   if (!row) return row.error();
   JobRecord& job = row->job;
   job.held = false;
-  SetBlocked(context, *row, 0);
   SetState(context, *row, JobState::kRunning);
   job.attempts += 1;
   row->attempts_begun += 1;

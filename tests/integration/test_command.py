@@ -1,5 +1,6 @@
 """The rmlcell command: local verbs without a server."""
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -7,6 +8,24 @@ import unittest
 
 from cell import BIN, SQUARE, eventually
 from command import InFolder, ask, run
+
+
+def writer_of(fifo):
+    """A descriptor, as soon as somebody reads there."""
+    try:
+        return os.open(fifo, os.O_WRONLY | os.O_NONBLOCK)
+    except OSError:
+        return None
+
+
+def null_devices(process):
+    """The descriptors that lead to the null device, and how each is open."""
+    found = {}
+    for number in os.listdir(f"/proc/{process}/fd"):
+        if os.readlink(f"/proc/{process}/fd/{number}") == os.devnull:
+            told = pathlib.Path(f"/proc/{process}/fdinfo/{number}").read_text()
+            found[int(number)] = int(told.partition("flags:")[2].split()[0], 8) & os.O_ACCMODE
+    return found
 
 
 class Local(InFolder):
@@ -272,6 +291,25 @@ class Local(InFolder):
         self.assertEqual(ask("nonsense").returncode, 2)
         self.assertEqual(ask("explain", "OPT-E348").returncode, 0)
         self.assertEqual(ask("jobs", server="127.0.0.1:1").returncode, 3)
+
+    # The number of a stream that is closed must not go to a file: what is there can be neither read nor written.
+    def test_a_stream_that_is_closed_is_no_file(self):
+        fifo = self.folder / "a.rml"
+        os.mkfifo(fifo)
+        for closed, held, code in (("", {}, 0), ("0", {0: os.O_WRONLY}, 0), ("1", {1: os.O_RDONLY}, 2),
+                                   ("2", {2: os.O_RDONLY}, 0)):
+            with self.subTest(closed=closed):
+                without = f" {closed}>&-" if closed else ""
+                command = subprocess.Popen(["sh", "-c", f'exec "$0" check "$1"{without}', BIN / "rmlcell", fifo],
+                                           stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                self.addCleanup(command.kill)
+                writer = eventually(lambda: writer_of(fifo))
+                self.assertTrue(writer)
+                self.assertEqual(null_devices(command.pid), held)
+                os.write(writer, b"PA;!PZ-10,10;PU0,0;PD5,0;PU;")
+                os.close(writer)
+                command.communicate(timeout=60)
+                self.assertEqual(command.returncode, code)
 
 
 class Refusals(unittest.TestCase):

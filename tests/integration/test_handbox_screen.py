@@ -6,6 +6,7 @@ import pty
 import signal
 import struct
 import subprocess
+import sys
 import termios
 import time
 import unittest
@@ -13,6 +14,25 @@ import unittest
 from cell import BIN, eventually, grpc, times_awake
 from pty_screen import Terminal
 from told_machine import ToldMachine
+
+# A shell: what it runs has the terminal, until it is told on its first argument to take that back.
+SHELL = """
+import os, signal, subprocess, sys
+
+def take():
+    before = signal.signal(signal.SIGTTOU, signal.SIG_IGN)
+    os.tcsetpgrp(0, os.getpgrp())
+    signal.signal(signal.SIGTTOU, before)
+
+def begin():
+    os.setpgrp()
+    take()
+
+job = subprocess.Popen(sys.argv[2:], preexec_fn=begin)
+os.read(int(sys.argv[1]), 1)
+take()
+sys.exit(job.wait())
+"""
 
 
 class HandboxScreenTest(unittest.TestCase):
@@ -331,6 +351,22 @@ class HandboxScreenTest(unittest.TestCase):
         os.close(master)
         self.assertEqual(process.wait(timeout=60), 0)
         self.assertEqual(len(self.machine.all_of("ReleaseControl")), 1)
+
+    # It is not stopped before it has given the terminal back.
+    def test_a_terminal_that_a_shell_takes_back(self):
+        self.machine.is_now()
+        self.machine.shows("READY")
+        terminal = Terminal()
+        heard, told = os.pipe()
+        terminal.process = subprocess.Popen(
+            ["setsid", "--ctty", sys.executable, "-c", SHELL, str(heard), os.path.join(BIN, "rmlcell"), "handbox", "m",
+             "--server", self.machine.address],
+            stdin=terminal.slave, stdout=terminal.slave, stderr=terminal.slave, pass_fds=[heard])
+        self.addCleanup(terminal.end)
+        os.close(heard)
+        self.assertTrue(terminal.shows("READY"), terminal.text())
+        os.close(told)
+        self.assert_ended(terminal, 0)
 
     # Who does not follow an order to end is killed in the end; who was given none never is.
     def test_only_who_does_not_follow_is_killed(self):

@@ -42,6 +42,17 @@ class Web(WithCell):
         self.assertEqual(caught.exception.code, 400)
         self.assertEqual(json.load(caught.exception)["code"], "invalid_argument")
 
+    # What lists methods and what workers and hosts speak is nothing for pages, which are told of no such method.
+    def test_services_that_are_not_for_browsers_are_not_found(self):
+        for method in ("grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", "rmlcell.v1.WorkerService/Work",
+                       "rmlcell.v1.HostService/Host"):
+            with self.assertRaises(urllib.error.HTTPError) as caught:
+                self.post(method, {})
+            self.assertEqual(caught.exception.code, 404, method)
+            answer = json.load(caught.exception)
+            self.assertEqual(answer["code"], "unimplemented", method)
+            self.assertIn(f"no method {method} on the web port", answer["message"])
+
     # RML1-E8007: what belongs to no command is refused with the reason, and stored where that is asked for.
     def test_an_upload_of_foreign_bytes_is_refused_unless_forced(self):
         def put(query):

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <span>
 
 #include "tests/storage/store_conformance.h"
 
@@ -147,6 +148,49 @@ TEST_P(StoreConformance, JobsAreListedInTheOrderOfTheQueue) {
   EXPECT_THAT(
       IdsOf(Must(store().ListJobs({.state = JobState::kSucceeded, .order = JobOrder::kQueue}))),
       ElementsAre(ids[0]));
+}
+
+// Of the whole list in each order: those that fit, from any place on, up to the limit.
+TEST_P(StoreConformance, StatesAreAskedForInEveryOrder) {
+  std::vector<std::int64_t> ids;
+  for (int i = 0; i < 8; ++i) ids.push_back(Submit().id);
+  Finish(Acquire().lease, JobState::kSucceeded);  // 0
+  Finish(Acquire().lease, JobState::kFailed);     // 1
+  for (int i = 0; i < 2; ++i) Acquire();          // 2 and 3
+  Must(store().HoldBack(ids[4], {}));
+  Must(store().Move(ids[7], ids[5], std::nullopt, {}));
+  Must(store().RequestCancel(ids[6], {}));
+  const auto fitting = [](std::span<const JobRecord> jobs, const JobQuery& query) {
+    std::vector<std::int64_t> found;
+    for (const JobRecord& job : jobs) {
+      const bool fits = (!query.state || job.state == *query.state) &&
+                        (!query.finished || IsFinal(job.state) == *query.finished);
+      if (fits && found.size() < static_cast<std::size_t>(query.limit)) found.push_back(job.id);
+    }
+    return found;
+  };
+  const std::optional<JobState> states[] = {std::nullopt, JobState::kQueued, JobState::kRunning,
+                                            JobState::kSucceeded, JobState::kCancelled};
+  const std::optional<bool> ends[] = {std::nullopt, true, false};
+  for (const JobOrder order : {JobOrder::kQueue, JobOrder::kOldestFirst, JobOrder::kNewestFirst}) {
+    const std::vector<JobRecord> all = Must(store().ListJobs({.order = order, .limit = 100}));
+    ASSERT_EQ(all.size(), ids.size());
+    for (std::size_t from = 0; from <= all.size(); ++from) {
+      for (const auto& state : states) {
+        for (const auto& finished : ends) {
+          for (const int limit : {1, 3, 100}) {
+            JobQuery query{.state = state, .finished = finished, .order = order, .limit = limit};
+            if (from > 0) query.behind = PlaceOf(all[from - 1]);
+            ASSERT_EQ(IdsOf(Must(store().ListJobs(query))),
+                      fitting(std::span(all).subspan(from), query))
+                << static_cast<int>(order) << ' ' << from << ' '
+                << (state ? static_cast<int>(*state) : -1) << ' '
+                << (finished ? static_cast<int>(*finished) : -1) << ' ' << limit;
+          }
+        }
+      }
+    }
+  }
 }
 
 // Every filter, alone and together, against a plain filter over all jobs.

@@ -1,6 +1,10 @@
 // Where jobs come to stand that are moved, and what becomes of those that are lost.
 #include <gtest/gtest.h>
 
+#include <span>
+#include <utility>
+#include <vector>
+
 #include "storage/jobs/job_rules.h"
 #include "storage/jobs/queue_rules.h"
 
@@ -48,6 +52,22 @@ TEST(PlacedJobs, OutcomesOfWhatWasNotCarriedOut) {
   const Status running = CheckFinal({.state = JobState::kRunning});
   ASSERT_FALSE(running);
   EXPECT_EQ(running.error().code, ErrorCode::kCellInvalidArgument);
+}
+
+// A line is a part of what is kept: what lies in front of it and behind is none of it, though it
+// was moved, too.
+TEST(PlacedJobs, WhatLiesAroundALineIsNoneOfIt) {
+  const std::vector<PlacedJob> kept = {Unmoved(0), MovedTo(7, 0.25), Unmoved(1), Unmoved(2),
+                                       MovedTo(8, 2.5)};
+  const std::span<const PlacedJob> line = std::span(kept).subspan(2, 2);
+  // The number of those that have a new place, and the place of the new one, which comes last.
+  const auto placed = [](const std::vector<PlacedJob>& spread) {
+    return std::pair(spread.size(), spread.back().place);
+  };
+  using Placed = std::pair<std::size_t, double>;
+  EXPECT_EQ(placed(Spread(line, 0, 5, 9)), Placed(1, 0.5));           // between 0 and 1
+  EXPECT_EQ(placed(Spread(line, 2, 5, 9)), Placed(1, 6.0));           // between 2 and 10
+  EXPECT_EQ(placed(Spread(line.first(0), 0, 5, 9)), Placed(1, 9.5));  // between 9 and 10
 }
 
 }  // namespace

@@ -170,6 +170,19 @@ TEST_F(SqliteContents, WhatADeletedMachineKeptGoes) {
   EXPECT_TRUE(Eventually([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; }));
 }
 
+// store.h DeleteJob: what it was given and what it made goes with it.
+TEST_F(SqliteContents, WhatADeletedJobKeptGoes) {
+  const std::string large = Noise(kContentInRecordMax + 1, 1);
+  Must(store().SubmitAndWait({.kind = "CHECK",
+                              .specification = large + "s",
+                              .attachments = {{.name = "a", .bytes = large + "a"}}}));
+  const Lease lease = Must(store().Acquire("w", {"CHECK"}, std::chrono::hours(1), {}))->lease;
+  Must(store().Finish(lease, {.artifacts = {{.name = "b", .bytes = large + "b"}}}));
+  EXPECT_EQ(Count("blob"), 3);
+  Must(store().DeleteJob(lease.job));
+  WaitUntil([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; });
+}
+
 TEST_F(SqliteContents, SmallContentsLieInTheirRow) {
   Must(store().PutMachine({.id = "m"}, 0));
   PutProgram(1, Noise(kContentInRowMax, 1));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
+#include <cerrno>
 #include <functional>
 #include <future>
 #include <thread>
@@ -341,6 +342,40 @@ TEST(SqliteFullDisk, ACopyThatDoesNotFitIsAnError) {
   Must(database.CopyTo(copy));
   EXPECT_EQ(NumberIn(copy, "SELECT count(*) FROM migration"),
             NumberIn(path, "SELECT count(*) FROM migration"));
+}
+
+// Of a copy it is not known which reason the system had: none is made up.
+TEST(SqliteFullDisk, ACopyThatTheDiskRefusesHasNoReason) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  const sqlite::Database database =
+      Must(sqlite::Database::Open(path, sqlite::Database::Access::kReadWrite, {}));
+  const FaultyForAll faulty;
+  faulty_disk::OnlyFilesEndingWith("copy.db");
+  faulty_disk::Fail({.on_write = SQLITE_IOERR_WRITE});
+  const Status copied = database.CopyTo(directory.File("copy.db"));
+  ASSERT_EQ(CodeOf(copied), kFailed);
+  EXPECT_TRUE(copied.error().detail.ends_with(")")) << copied.error().detail;
+}
+
+// Of a write it is: what the system said stands behind the code.
+TEST(SqliteFullDisk, AWriteThatTheDiskRefusesHasItsReason) {
+  faulty_disk::Register();
+  faulty_disk::Heal();
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  sqlite::Database database = Must(sqlite::Database::Open(
+      path, sqlite::Database::Access::kReadWrite, {.vfs = faulty_disk::kName}));
+  Must(database.Execute("CREATE TABLE filling (bytes BLOB)"));
+  faulty_disk::Fail({.on_write = SQLITE_IOERR_WRITE});
+  errno = EIO;
+  const Status refused = database.Execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  faulty_disk::Heal();
+  ASSERT_EQ(CodeOf(refused), kFailed);
+  EXPECT_NE(refused.error().detail.find("(SQLite 778): "), std::string::npos)
+      << refused.error().detail;
 }
 
 }  // namespace

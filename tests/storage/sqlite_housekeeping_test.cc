@@ -149,6 +149,16 @@ TEST_F(SqliteSlices, TakeAThousandOldEvents) {
   EXPECT_EQ(Must(connection_.tables.jobs.Get(1))->job.events_gone_until, 2'420);
 }
 
+// Fewer than a slice takes: there are no more, also where no event has the number that comes last.
+TEST_F(SqliteSlices, TakeFewerThanAThousandUpToTheLimit) {
+  AddFinishedJob(1);
+  AddEvents(1, 999);
+  counters_ = {.job = 1, .position = 2'000, .finished_jobs = 1};
+  EXPECT_FALSE(Must(Slice({.events = 80})));
+  EXPECT_EQ(counters_.events_trimmed_until, 1'920);
+  EXPECT_EQ(Count("event"), 0);
+}
+
 // Down to the limit: those beyond it, a thousand at a time.
 TEST_F(SqliteSlices, TakeAThousandEventsOfRecords) {
   AddEvents(0, 1'200);

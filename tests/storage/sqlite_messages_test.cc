@@ -129,16 +129,21 @@ TEST_F(SqliteMessages, OfMachinesThatAreHosted) {
   EXPECT_EQ(mark(lease, 6, "axes"), "machine m has no host");
 }
 
-// records.h: `created_at` is of the first put, `updated_at` of the newest; in lists, too.
+// records.h: `created_at` is of the first put, `updated_at` of the newest, of none between them; in
+// lists, too.
 TEST_F(SqliteMessages, RecordsKeepTheTimesOfTheirFirstAndLastPut) {
   const WallTime first = bed_.clock().Now();
   Must(store().PutMachine({.id = "m"}, 0));
   Must(store().PutProject({.id = "p"}, 0));
   Must(store().PutPrograms("m", {{.slot = 1, .object = "a"}}, {{.number = 2}}));
   bed_.clock().Advance(std::chrono::seconds(5));
-  const WallTime last = bed_.clock().Now();
   Must(store().PutMachine({.id = "m"}, 1));
-  const ProjectRecord put = Must(store().PutProject({.id = "p"}, 1));
+  Must(store().PutProject({.id = "p"}, 1));
+  Must(store().PutPrograms("m", {{.slot = 1, .object = "c"}}, {{.number = 2}}));
+  bed_.clock().Advance(std::chrono::seconds(5));
+  const WallTime last = bed_.clock().Now();
+  Must(store().PutMachine({.id = "m"}, 2));
+  const ProjectRecord put = Must(store().PutProject({.id = "p"}, 2));
   const auto programs =
       Must(store().PutPrograms("m", {{.slot = 1, .object = "b"}}, {{.number = 2}}));
   EXPECT_EQ(put.created_at, first);
@@ -155,7 +160,7 @@ TEST_F(SqliteMessages, RecordsKeepTheTimesOfTheirFirstAndLastPut) {
        {Must(store().GetProject("p")), Must(store().ListProjects("", 1))[0]}) {
     EXPECT_EQ(project.created_at, first);
     EXPECT_EQ(project.updated_at, last);
-    EXPECT_EQ(project.revision, 2);
+    EXPECT_EQ(project.revision, 3);
   }
   for (const ProgramSummary& summary :
        {Must(store().GetProgramSummary("m", 1)), Must(store().ListPrograms("m", 0, 1))[0]}) {
@@ -235,8 +240,10 @@ TEST(SqliteFiles, WhatCannotBeOpenedIsNamedWithItsReason) {
             "cannot open lock file " + folder + ": Is a directory");
   EXPECT_EQ(DetailOf(MakePrivateFile(folder)), "cannot open " + folder + ": Is a directory");
   Write(directory.File("file"), "x");
-  EXPECT_EQ(DetailOf(MakeDirectoryOf(directory.File("file/cell.db"))),
-            "cannot make directory " + directory.File("file") + ": Not a directory");
+  for (const char* path : {"file/cell.db", "file/below/cell.db", "file/below/it/cell.db"}) {
+    EXPECT_EQ(DetailOf(MakeDirectoryOf(directory.File(path))),
+              "cannot make directory " + directory.File("file") + ": Not a directory");
+  }
   const std::string too_long = directory.File(std::string(300, 'd'));
   EXPECT_EQ(DetailOf(MakeDirectoryOf(too_long + "/cell.db")),
             "cannot make directory " + too_long + ": File name too long");
@@ -267,6 +274,40 @@ TEST(SqliteFiles, ALockNamesItsHolder) {
   const auto taken = StoreLock::Take(path);
   ASSERT_TRUE(taken);
   EXPECT_EQ(std::filesystem::file_size(path), std::to_string(getpid()).size() + 1);
+}
+
+bool IsStandardOutputOpen() { return fcntl(STDOUT_FILENO, F_GETFD) != -1; }
+
+// A lock that is handed on is the same file: no other is closed with what it comes from.
+TEST(SqliteFiles, ALockThatIsHandedOnClosesNothing) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db.lock");
+  ASSERT_TRUE(IsStandardOutputOpen());
+  {
+    Result<StoreLock> taken = StoreLock::Take(path);
+    ASSERT_TRUE(taken);
+    EXPECT_TRUE(IsStandardOutputOpen());
+    const StoreLock handed_on = *std::move(taken);
+    EXPECT_EQ(CodeOf(StoreLock::Take(path)), ErrorCode::kCellStoreBusy);
+  }
+  EXPECT_TRUE(IsStandardOutputOpen());
+  EXPECT_FALSE(CodeOf(StoreLock::Take(path)));
+}
+
+// A process without a standard output: the lock has its number then, and is let go as any other.
+TEST(SqliteFiles, ALockIsLetGoWhateverItsNumber) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db.lock");
+  const int output = dup(STDOUT_FILENO);
+  close(STDOUT_FILENO);
+  const auto first = CodeOf(StoreLock::Take(path));
+  const auto second = CodeOf(StoreLock::Take(path));
+  if (output >= 0) {
+    dup2(output, STDOUT_FILENO);
+    close(output);
+  }
+  EXPECT_EQ(first, std::nullopt);
+  EXPECT_EQ(second, std::nullopt);
 }
 
 }  // namespace

@@ -120,5 +120,20 @@ TEST_F(SqliteMigrations, DatabaseOfAnotherProgramIsRefused) {
   EXPECT_EQ(NumberIn(path_, "SELECT count(*) FROM sqlite_master"), 1);
 }
 
+// A file is either empty or known as ours: one that another program has marked is not empty, though
+// it has no table, and one with our mark has a version.
+TEST_F(SqliteMigrations, AMarkAloneMakesNoStore) {
+  const std::string marks[] = {"PRAGMA application_id = 7", "PRAGMA user_version = 2",
+                               "PRAGMA application_id = " + std::to_string(kApplicationId)};
+  for (const std::string& mark : marks) {
+    const std::string path = directory_.File(mark);
+    ExecuteIn(path, mark);
+    Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+    const Result<int> refused = StoreNumber(database, kThree);
+    ASSERT_EQ(CodeOf(refused), ErrorCode::kCellStoreCorrupt) << mark;
+    EXPECT_EQ(refused.error().detail, "the file is a database of another program") << mark;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

@@ -182,5 +182,29 @@ TEST_F(SqliteMoves, WhereNobodyStandsIsNoPlace) {
   EXPECT_EQ(Must(queue.PlaceBefore("", "ORDER", {.job = job, .place = 99.0})), std::nullopt);
 }
 
+// records.h kTeachRecordsKept: the newest of each machine, here of numbers far apart.
+TEST_F(SqliteMoves, TheOldestOfWhatWasTaughtGoes) {
+  const auto teach = [&](const std::string& machine) {
+    return Must(store().AddTeachRecord({.machine = machine, .program = 1, .entry = "e"}));
+  };
+  for (const char* machine : {"m", "n"}) {
+    Must(store().PutMachine({.id = machine}, 0));
+    for (int i = 0; i < 3; ++i) teach(machine);
+  }
+  bed_.Close();
+  ExecuteIn(bed_.path(), "UPDATE taught SET number = " + std::to_string(kTeachRecordsKept) +
+                             " WHERE machine = 'm' AND number = 3");
+  bed_.Reopen();
+  EXPECT_EQ(teach("m"), kTeachRecordsKept + 1);
+  const auto numbers = [&](const std::string& machine) {
+    std::vector<std::int64_t> found;
+    for (const TeachRecord& one : Must(store().ListTeachRecords(machine, 0, 0, 99)))
+      found.push_back(one.number);
+    return found;
+  };
+  EXPECT_THAT(numbers("m"), ElementsAre(kTeachRecordsKept + 1, kTeachRecordsKept, 2));
+  EXPECT_THAT(numbers("n"), ElementsAre(3, 2, 1));
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

@@ -414,5 +414,62 @@ TEST(SqliteRefusals, AContentWithADamagedPart) {
   }
 }
 
+// 9104: a content that is not whole has no name, and neither has the artifact that is one; those
+// beside it are served.
+TEST(SqliteRefusals, AnArtifactWhoseContentIsNotWhole) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  Must(bed.store().SubmitAndWait(
+      {.kind = "CHECK",
+       .attachments = {{.name = "main", .bytes = "main bytes"},
+                       {.name = "part", .bytes = Noise(kProductInRowMax + 1, 1)}}}));
+  bed.Close();
+  ExecuteIn(bed.path(), "UPDATE blob SET sha256 = NULL");
+  bed.Reopen();
+  const auto artifact = bed.store().GetArtifact(1, "part");
+  ASSERT_EQ(CodeOf(artifact), kCorruptFile);
+  EXPECT_THAT(artifact.error().detail, HasSubstr("artifact part of job 1 are not there"));
+  EXPECT_EQ(CodeOf(bed.store().ListArtifacts(1)), kCorruptFile);
+  EXPECT_EQ(Must(bed.store().GetArtifact(1, "main")).size, 10);
+}
+
+// 9104: a request that counts as known, by an index that is none of ours, and has no job.
+TEST(SqliteRefusals, ARequestIdWithoutItsJob) {
+  SqliteBed bed;
+  Must(bed.store().SubmitAndWait({.request_id = "r", .kind = "CHECK"}));
+  bed.Close();
+  ExecuteIn(bed.path(), "CREATE UNIQUE INDEX folded ON job (request_id COLLATE NOCASE)");
+  bed.Reopen();
+  const auto refused = bed.store().SubmitAndWait({.request_id = "R", .kind = "CHECK"});
+  ASSERT_EQ(CodeOf(refused), kCorruptFile);
+  EXPECT_EQ(refused.error().detail, "a request id without its job");
+  EXPECT_EQ(Must(bed.store().ListJobs({})).size(), 1U);
+  EXPECT_EQ(Must(bed.store().CountJobs()).queued, 1);
+}
+
+// However much waits: a content that nobody named would stay on the disk until the next start.
+TEST_F(SqliteOwnWriter, WhoLetsAContentGoIsNeverRefused) {
+  Writer::Options options = kRoomy;
+  options.waiting_operations_max = 1;
+  std::vector<std::optional<ErrorCode>> answers;
+  const std::string content = Noise(kChunkBytes + 1, 1);
+  Writer writer(connection_, {}, {}, options, SystemTime, [] {});
+  std::optional<StagedContent> staged(
+      Must(StagedContent::Make(writer, content, StagedContent::Place::kBlob)));
+  const auto holds = [&] {
+    return Must(writer.Do([&](WriteContext&) {
+      return connection_.database.Number("SELECT ifnull(sum(holds), 0) FROM blob");
+    }));
+  };
+  EXPECT_EQ(holds(), 1);
+  Must(writer.Do([&](WriteContext&) -> Status {
+    for (int i = 0; i < 2; ++i) writer.Post(std::make_unique<NoWrite>(answers), 1);
+    EXPECT_EQ(answers.size(), 1U);  // the second was refused
+    staged.reset();
+    return {};
+  }));
+  EXPECT_EQ(holds(), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

@@ -8,10 +8,12 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/core/hex.h"
 #include "storage/content.h"
+#include "storage/sqlite/database.h"
 #include "tests/storage/quiet_process.h"
 #include "tests/storage/sqlite_bed.h"
 
@@ -179,6 +181,131 @@ TEST(SqliteLeases, ALeaseThatIsRenewedMeanwhileIsNotTaken) {
   EXPECT_TRUE(renewed);
   EXPECT_TRUE(Must(*taken).empty());
   EXPECT_EQ(Must(store.GetJob(lease.job)).state, JobState::kRunning);
+}
+
+// And one that was given back and given to another one meanwhile is that one's, who may have had it
+// for no time at all.
+TEST(SqliteLeases, ALeaseThatWasGivenAnewMeanwhileIsNotTaken) {
+  SqliteBed bed;
+  Store& store = bed.store();
+  Must(store.SubmitAndWait({.kind = "SIMULATE"}));
+  const Lease lease = Must(store.Acquire("w", {"SIMULATE"}, kLease, {}))->lease;
+  bed.clock().Advance(2 * kLease);
+  std::optional<Result<std::vector<LeasedJob>>> given;
+  std::optional<Result<std::vector<JobRecord>>> taken;
+  std::jthread other;
+  std::jthread taker;
+  {
+    const StandingWriter stands(store);
+    store.SendHandBack(lease, PolicyOfTests(), [](const Result<JobRecord>&) {});
+    other = std::jthread(
+        [&] { given.emplace(store.AcquireJobs({.worker = "x", .kinds = {"SIMULATE"}})); });
+    EXPECT_TRUE(ComesToRest());  // it waits behind what is given back
+    taker = std::jthread([&] { taken.emplace(store.Expire(PolicyOfTests())); });
+    EXPECT_TRUE(ComesToRest());  // it has seen the first lease and waits behind the other one
+  }
+  other.join();
+  taker.join();
+  ASSERT_EQ(Must(*given).size(), 1U);
+  EXPECT_TRUE(Must(*taken).empty());
+  EXPECT_EQ(Must(store.GetJob(lease.job)).state, JobState::kRunning);
+  const std::vector<AttemptRecord> attempts = Must(store.ListAttempts(lease.job));
+  ASSERT_EQ(attempts.size(), 2U);
+  EXPECT_EQ(attempts[0].how_it_ended, "handed back");
+  EXPECT_EQ(attempts[1].how_it_ended, "");
+}
+
+// store.h SendFinish: a large program that a run compiled is no more waited for than a large
+// product is.
+TEST(SqliteLargeEnds, WhoTellsOfALargeExecutableWaitsForNothing) {
+  std::promise<std::optional<ErrorCode>> ended;
+  SqliteBed bed;
+  Store& store = bed.store();
+  Must(store.PutMachine({.id = "m"}, 0));
+  Must(store.PutPrograms("m", {{.slot = 1, .object = "o"}}, {}));
+  Must(store.SubmitAndWait({.machine = "m", .kind = "SIMULATE"}));
+  const Lease lease = Must(store.Acquire("w", {"SIMULATE"}, kLease, {}))->lease;
+  const std::string large = Noise(kChunkBytes + 1, 1);
+  const auto end = std::make_shared<const JobEnd>(
+      JobEnd{.executables = {{.slot = 1, .object_revision = 1, .bytes = large}}});
+  std::future<void> told;
+  {
+    const StandingWriter stands(store);
+    told = std::async(std::launch::async, [&] {
+      store.SendFinish(lease, end, {},
+                       [&](const Result<FinishedJob>& job) { ended.set_value(CodeOf(job)); });
+    });
+    EXPECT_EQ(told.wait_for(kPatience), std::future_status::ready);
+  }
+  told.get();
+  auto answer = ended.get_future();
+  ASSERT_EQ(answer.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(answer.get(), std::nullopt);
+  EXPECT_TRUE(Must(store.GetProgram("m", 1)).executable == large);
+}
+
+// sqlite_store.h waiting_operations_max: submissions and appended events, and no other write.
+TEST(SqliteLoneWrites, WhoWaitsForHisWriteIsNeverRefused) {
+  SqliteOptions options;
+  options.waiting_operations_max = 1;
+  std::atomic<int> refused = 0;
+  std::optional<Result<MachineRecord>> put;
+  SqliteBed bed(options);
+  std::jthread waits;
+  {
+    const StandingWriter stands(bed.store());
+    for (int i = 0; i < 2; ++i) {
+      bed.store().Submit({.kind = "CHECK"}, [&](const Result<SubmittedJob>& made) {
+        if (!made) ++refused;
+      });
+    }
+    EXPECT_EQ(refused, 1);
+    waits = std::jthread([&] { put.emplace(bed.store().PutMachine({.id = "m"}, 0)); });
+    EXPECT_TRUE(ComesToRest());
+  }
+  waits.join();
+  EXPECT_EQ(CodeOf(*put), std::nullopt);
+}
+
+// store.h NewJob::more_come: the store's own thread writes it and answers; who is answered may call
+// the store there as well, also in ways that wait.
+TEST(SqliteLoneWrites, AnAnswerOfTheStoresOwnThreadMayWrite) {
+  std::promise<std::pair<std::thread::id, std::optional<ErrorCode>>> written;
+  SqliteBed bed;
+  EXPECT_TRUE(ComesToRest());  // the thread has nothing to do
+  bed.store().Submit({.kind = "CHECK", .more_come = true}, [&](const Result<SubmittedJob>&) {
+    const std::optional<ErrorCode> put = CodeOf(bed.store().PutMachine({.id = "m"}, 0));
+    written.set_value({std::this_thread::get_id(), put});
+  });
+  auto answer = written.get_future();
+  ASSERT_EQ(answer.wait_for(kPatience), std::future_status::ready);
+  const auto [thread, put] = answer.get();
+  EXPECT_NE(thread, std::this_thread::get_id());
+  EXPECT_EQ(put, std::nullopt);
+}
+
+// Most who ask for work or for orders find nothing: they write nothing, and do not wait for a
+// program that holds the file, also where jobs wait that may not begin.
+TEST(SqliteLoneWrites, WhoFindsNothingWaitsForNobody) {
+  SqliteOptions options;
+  options.busy_timeout = std::chrono::milliseconds(50);
+  SqliteBed bed(options);
+  Must(bed.store().SubmitAndWait({.kind = "CHECK", .held = true}));
+  const WallTime later = bed.clock().Now() + std::chrono::hours(1);
+  Must(bed.store().SubmitAndWait({.kind = "CHECK", .not_before = later}));
+  for (const bool opened_again : {false, true}) {
+    if (opened_again) bed.Reopen();
+    EXPECT_TRUE(ComesToRest());
+    sqlite::Database other =
+        Must(sqlite::Database::Open(bed.path(), sqlite::Database::Access::kReadWrite, {}));
+    Must(other.Execute("BEGIN IMMEDIATE"));
+    const auto leased =
+        bed.store().AcquireJobs({.worker = "w", .kinds = {"CHECK"}, .duration = kLease});
+    EXPECT_EQ(CodeOf(leased), std::nullopt) << opened_again;
+    EXPECT_TRUE(!leased || leased->empty());
+    EXPECT_EQ(CodeOf(bed.store().TakeOrders("s")), std::nullopt) << opened_again;
+    Must(other.Execute("ROLLBACK"));
+  }
 }
 
 }  // namespace

@@ -208,17 +208,19 @@ TEST(SqliteWriter, WhoWaitsForAJobIsNeverRefused) {
     withdrawn.set_value(leased ? leased->size() : 99U);
   });
   Must(bed.store().ActOn({}, QueueAct::kHold, {}));  // it stands
+  auto nothing = withdrawn.get_future();
   {
     WriterHold hold(bed.store());
     for (int i = 0; i < 3; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
     EXPECT_EQ(answers.refused, 1);
     bed.store().Withdraw(first);
+    // It waits as any other: whoever has the turn looks at those that stand, and nobody else.
+    EXPECT_EQ(nothing.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
     await([&](const Result<std::vector<LeasedJob>>& leased) {
       given.set_value(leased && !leased->empty() ? leased->front().lease.job : 0);
     });
     hold.Release();
   }
-  auto nothing = withdrawn.get_future();
   ASSERT_EQ(nothing.wait_for(kPatience), std::future_status::ready);
   EXPECT_EQ(nothing.get(), 0U);
   const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "SIMULATE"})).job.id;

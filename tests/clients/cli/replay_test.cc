@@ -186,6 +186,9 @@ TEST_F(ReplayTest, WhereAnOpenRunStandsIsTold) {
   };
   EXPECT_THAT(told(500'000'000), StartsWith("at 0.500 s of the machine: "));
   EXPECT_THAT(told(500'000'000), Not(HasSubstr(" at ")));
+  // It is open, and has come to no step yet.
+  EXPECT_THAT(told(1'000'000'000), StartsWith("at 1.000 s of the machine: "));
+  EXPECT_THAT(told(1'000'000'000), Not(HasSubstr(" at ")));
   EXPECT_THAT(told(51'000'000'000), StartsWith("at 51.000 s of the machine: RUNNING at 4/1  "));
   EXPECT_THAT(told(151'000'000'000),
               StartsWith("at 2 min 31.000 s of the machine: RUNNING at 4/2  "));

@@ -7,7 +7,10 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <iterator>
+#include <system_error>
 
 #include "clients/cli/program_files.h"
 #include "tests/clients/cli/cli_folder.h"
@@ -100,6 +103,24 @@ TEST_F(WriteWholeFileTest, ALinkMayLeadToAFileThatIsStillToBeMade) {
   ExpectUnwritable(WriteWholeFile(round, "new"), round);
 }
 
+// As many behind each other as the system itself follows.
+TEST_F(WriteWholeFileTest, FortyLinksAreFollowed) {
+  folder.Put("0", "old");
+  for (int n = 1; n <= 41; ++n)
+    fs::create_symlink(std::to_string(n - 1), folder.File(std::to_string(n)));
+  const std::string farther = folder.File("41");
+  const Status refused = WriteWholeFile(farther, "new");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellFileUnwritable);
+  EXPECT_EQ(refused.error().detail, farther + ": " + std::generic_category().message(ELOOP));
+  EXPECT_EQ(folder.Read("0"), "old");
+  EXPECT_TRUE(WriteWholeFile(folder.File("40"), "new"));
+  EXPECT_EQ(folder.Read("0"), "new");
+  EXPECT_FALSE(fs::is_symlink(folder.File("0")));
+  for (int n = 1; n <= 41; ++n) EXPECT_TRUE(fs::is_symlink(folder.File(std::to_string(n)))) << n;
+  EXPECT_EQ(folder.Names().size(), 42U);
+}
+
 // Nobody may make a file beside it: the name leaves no room for one, whoever runs the test.
 TEST_F(WriteWholeFileTest, WhereNoFileCanBeMadeTheOldOneStays) {
   const std::string name(250, 'n');
@@ -122,6 +143,20 @@ TEST_F(WriteWholeFileTest, AFileThatCannotBeWrittenToItsEndLeavesTheOldOne) {
   }
   EXPECT_EQ(folder.Read("a.S"), std::string(4096, 'x'));
   EXPECT_THAT(folder.Names(), ElementsAre("a.S"));
+}
+
+TEST_F(WriteWholeFileTest, NoDescriptorIsLeftOpen) {
+  const auto descriptors = [] {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), {});
+  };
+  const auto before = descriptors();
+  EXPECT_TRUE(WriteWholeFile(folder.File("a.S"), "new"));
+  EXPECT_EQ(descriptors(), before);
+  {
+    const FileSizeLimit limit(4096);
+    EXPECT_FALSE(WriteWholeFile(folder.File("a.S"), std::string(4097, 'y')));
+  }
+  EXPECT_EQ(descriptors(), before);
 }
 
 TEST_F(WriteWholeFileTest, APipeTakesTheBytesAndStaysAPipe) {

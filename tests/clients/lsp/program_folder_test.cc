@@ -1,12 +1,18 @@
 #include "clients/lsp/program_folder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
 
 namespace rmlcell::lsp {
 namespace {
@@ -94,6 +100,33 @@ TEST_F(OnDisk, FilesAreReadUpToALimitAndNothingElseIs) {
   ASSERT_EQ(mkfifo((folder_ / "48.S").c_str(), 0600), 0);
   EXPECT_EQ(disk_.Read(Uri("48.S")).error().code,
             ErrorCode::kCellFileUnreadable);  // and no waiting
+}
+
+// What opens cannot always be read: the kernel knows no speed of the network inside of a machine.
+TEST_F(OnDisk, AFileWhoseReadingFailsIsRefused) {
+  const std::string path = "/sys/class/net/lo/speed";
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  char byte = 0;
+  const bool fails = file >= 0 && ::read(file, &byte, 1) < 0;
+  if (file >= 0) ::close(file);
+  if (!fails) GTEST_SKIP() << "no such file is known here";
+  const Result<std::string> text = disk_.Read(UriOfPath(path));
+  ASSERT_FALSE(text);
+  EXPECT_EQ(text.error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(text.error().detail, path);
+}
+
+// The kernel says of its files that they are longer than what is in them.
+TEST_F(OnDisk, AFileThatIsShorterThanItsSizeIsReadToItsEnd) {
+  const std::string path = "/sys/class/net/lo/mtu";
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error || bytes.empty() || size <= bytes.size()) GTEST_SKIP() << "no such file is known here";
+  const Result<std::string> text = disk_.Read(UriOfPath(path));
+  ASSERT_TRUE(text);
+  EXPECT_EQ(*text, bytes);
 }
 
 // A folder may be large: 20,000 names are looked at, whatever they are.

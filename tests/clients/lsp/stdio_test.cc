@@ -9,9 +9,11 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <future>
 #include <iterator>
@@ -32,6 +34,15 @@ constexpr int kNobodyWaitsLonger_ms = 60'000;
 
 std::ptrdiff_t OpenDescriptors() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+// The time of a processor that it has used so far.
+std::int64_t CpuTimeOf(std::thread& thread) {
+  clockid_t of_thread{};
+  EXPECT_EQ(::pthread_getcpuclockid(thread.native_handle(), &of_thread), 0);
+  timespec used{};
+  EXPECT_EQ(::clock_gettime(of_thread, &used), 0);
+  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
 }
 
 // Both ends of two wires; the session has the other two of the four.
@@ -265,6 +276,43 @@ TEST_F(Stdio, TheWireIsAsItWas) {
   EXPECT_EQ(Code(), 1);
   EXPECT_EQ(::fcntl(wires_.output(), F_GETFL), before);
   EXPECT_EQ(OpenDescriptors(), open);
+}
+
+// Whose client names no process has none to close.
+TEST_F(Stdio, ASessionWithoutAProcessClosesNothing) {
+  const std::ptrdiff_t open = OpenDescriptors();
+  Begin();
+  Initialize();
+  ExpectItAnswers(2);
+  Send("exit", nullptr);
+  EXPECT_EQ(Code(), 1);
+  EXPECT_EQ(OpenDescriptors(), open);
+}
+
+// Whoever waits for its client does nothing at all, however long others work beside it.
+TEST_F(Stdio, ASessionThatWaitsDoesNothing) {
+  Begin();
+  Initialize();
+  ExpectItAnswers(2);
+  Wires wires;
+  std::thread other(
+      [&wires] { static_cast<void>(RunOnDescriptors(wires.input(), wires.output())); });
+  const Json message = {{"jsonrpc", "2.0"}, {"id", 1}, {"method", "nothing/of/this"}};
+  const std::string request = Framed(message.dump());
+  bool stands = false;  // from the first time on, unless its last answer is not over yet
+  for (int times = 0; times < 20 && !stands; ++times) {
+    const std::int64_t before = CpuTimeOf(session_);
+    for (int requests = 0; requests < 500; ++requests) {
+      wires.Write(request);
+      EXPECT_TRUE(wires.Next());
+    }
+    stands = CpuTimeOf(session_) == before;
+  }
+  EXPECT_TRUE(stands);
+  wires.HangUp();
+  other.join();
+  Send("exit", nullptr);
+  EXPECT_EQ(Code(), 1);
 }
 
 TEST_F(Stdio, AWireThatNeverWaitedStaysSo) {

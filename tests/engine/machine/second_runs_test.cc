@@ -6,6 +6,11 @@ namespace {
 
 class SecondRuns : public MachineTest {};
 
+class MillRefusals : public MachineTest {
+ protected:
+  MillRefusals() : MachineTest("rml1") {}
+};
+
 // LIVE-2.10: whoever is refused is told what is possible instead, and that is another thing with a
 // run open than without one.
 TEST_F(SecondRuns, ARefusalSaysWhatIsPossible) {
@@ -15,6 +20,18 @@ TEST_F(SecondRuns, ARefusalSaysWhatIsPossible) {
   ASSERT_EQ(state(), MachineState::kRunning);
   EXPECT_EQ(Refused(StartRun{.program = 1}),
             "CELL-E9421 the machine is RUNNING: a run is open; hold or abort it");
+  Good(SwitchPower{false});
+  Good(SwitchPower{true});
+  ASSERT_EQ(state(), MachineState::kNotZeroed);
+  EXPECT_EQ(Refused(StartRun{.program = 1}), "OPT-E7310 START with axes that have no reference");
+  EXPECT_EQ(Refused(ResumeRun{}),
+            "CELL-E9421 the machine is NOT_ZEROED: no run is open; start one");
+}
+
+// A mill has no code of its own for axes without reference, and never says so.
+TEST_F(MillRefusals, ARefusalSaysWhatIsPossible) {
+  Load({"PU100,100;"});
+  EXPECT_EQ(Refused(ResumeRun{}), "CELL-E9421 the machine is IDLE: no run is open; start one");
 }
 
 // The display follows the run that is open, also where another one was before it: what is left of

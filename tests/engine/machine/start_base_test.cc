@@ -257,6 +257,16 @@ TEST_F(StartBaseTest, KeepsInputsAsTheyCame) {
   EXPECT_EQ(machine->base()->inputs, inputs);
 }
 
+TEST_F(StartBaseTest, KeepsTheDoorAsItWent) {
+  Load({"DELAY 100\n"});
+  GoOn(At(10.0));
+  Start();
+  GoOn(At(11.0));
+  Good(MoveDoor{.open = true});
+  EXPECT_EQ(machine->base()->inputs,
+            (InputScript{{.at = At(1.0), .kind = InputKind::kDoor, .value = 1.0}}));
+}
+
 // What a run stood at its breakpoints is no time of the next one.
 TEST_F(StartBaseTest, EachRunCountsAnew) {
   Load({"DELAY 2\nVI[1]=1\nDELAY 30\n"});

@@ -101,6 +101,19 @@ TEST(AxesCorner, LowAccelerationOpensTheCorner) {
               std::sqrt(2.0) * 3.0 / 32.0 * (1.5 * 250.0 / 200.0) * 250.0, 1e-9);
 }
 
+// More than all of it is all of it.
+TEST(AxesCorner, NoAccelerationAboveAll) {
+  const auto deviation = [](double accel) {
+    std::vector<MoveCommand> chain{InAxes(kHere, kEast, 0.5),
+                                   InAxes(kEast, kNorthEast, 0.5, false)};
+    for (MoveCommand& move : chain) move.acceleration_fraction = accel;
+    return FirstCorner(PlanOf(chain)).deviation_mm;
+  };
+  EXPECT_NEAR(deviation(1.0),
+              std::sqrt(2.0) * 3.0 / 32.0 * std::sqrt(6.0 * 250.0 / 40000.0) * 250.0, 1e-9);
+  EXPECT_NEAR(deviation(1.5), deviation(1.0), 1e-9);
+}
+
 // Rotary axes take part alike. A turns at its highest speed: T_b by its jerk, sqrt(6 x 2 pi / 400).
 TEST(AxesCorner, RotaryAxesTakePart) {
   const auto motions = PlanOf({InAxes(kHere, {{0, 0, 0}, 6.0, 0.0}, 1.0),

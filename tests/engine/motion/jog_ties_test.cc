@@ -75,5 +75,19 @@ TEST(JogTies, ExactlyEnoughWayIsEnough) {
   }
 }
 
+// What is asked back brakes at once, however little way it has gone: A at 0.5 rad/s, 0.18 rad after
+// it began, is at rest after one ramp, and after a second one as fast the other way.
+TEST(JogTies, WhatIsAskedBackBrakesAtOnce) {
+  JogDrive drive(Gantry(), JogMode::kRobot, {{1000.0, 900.0, -300.0}, 0.0, 0.0});
+  drive.Demand(Of(0.0, 0.0, 0.0, 0.5, 0.0));
+  drive.Advance(0.4);
+  const double ramp_s = 2.0 * std::sqrt(0.5 / 400.0);
+  const double there = drive.axes().a_rad;
+  ASSERT_NEAR(there, 0.5 * (0.4 - 0.5 * ramp_s), 1e-9);
+  drive.Demand(Of(0.0, 0.0, 0.0, -0.5, 0.0));
+  drive.Advance(1.4);
+  EXPECT_NEAR(drive.axes().a_rad, there - 0.5 * (1.0 - 2.0 * ramp_s), 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion::jog_ties

@@ -177,6 +177,23 @@ TEST(KeptValues, ABendKeepsTheWeakAxis) {
   }
 }
 
+// What X is slower by than the bend wants is told, and what differs by last digits alone is not:
+// both slants are at 100 mm/s, of which X has all in the middle of the bend.
+TEST(KeptValues, ABendOfLastDigitsIsNotCapped) {
+  const std::vector<MoveCommand> chain{LineMove({{0, 0, 0}}, {{50, 50, 0}}, 0.2),
+                                       LineMove({{50, 50, 0}}, {{100, 0, 0}}, 0.2)};
+  for (const double less : {0.0, 1e-7}) {
+    MachineLimits machine = StandardMachine();
+    machine.axes.speed[0] = 100.0 * (1.0 - less);
+    const std::vector<PlannedMotion> plan = Plan(chain, machine);
+    const auto first =
+        std::ranges::find_if(plan, [](const PlannedMotion& motion) { return motion.ends_move; });
+    ASSERT_TRUE(first != plan.end());
+    ASSERT_TRUE(Bends(*first)) << less;
+    EXPECT_EQ(first->corner.passage, less == 0.0 ? Passage::kBlend : Passage::kBlendCapped) << less;
+  }
+}
+
 // A corner of the axes that had to be lowered is still passed steadily, the
 // head turning or not. motion.md 4.5
 TEST(KeptValues, ACornerOfTheAxesIsPassedSteadily) {

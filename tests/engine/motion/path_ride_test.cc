@@ -205,6 +205,33 @@ TEST(PathRide, StopInTheLastRampLeavesTheSettling) {
   EXPECT_EQ(std::get<PlannedMark>(ride.interrupted()[1]).tag, 13u);
 }
 
+// Where there is nothing to settle the rest begins with the next move, and that is over where it
+// ends, however short it is.
+TEST(PathRide, StopInTheLastRampLeavesTheNextMoveWhole) {
+  std::vector<MoveCommand> chain(2);
+  chain[0].path = PathPiece::Line({}, {{100, 0, 0}});
+  chain[1].path = PathPiece::Line({{100, 0, 0}}, {{100, 0.8, 0}});
+  chain[0].fly = true;
+  chain[0].overshoot_fraction = 0.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    chain[k].speed_fraction = 0.1;
+    chain[k].tag = k + 1;
+  }
+  PathRide ride(HoldRamp::kStays);
+  for (const PlannedMotion& motion : Plan(chain)) ride.Plan(motion);
+  const SimTime now = ride.Begin(kBegin).arrival - std::chrono::milliseconds(10);
+  const AxisLimits axes = StandardMachine().axes;
+  const auto plan = ride.PlanStop(now, axes);
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_EQ(plan->rests_on, 1u);
+  ride.Stop(*plan, axes);
+  ASSERT_EQ(ride.interrupted().size(), 1u);
+  const auto& next = std::get<PlannedMotion>(ride.interrupted()[0]);
+  EXPECT_EQ(next.tag, 2u);
+  EXPECT_NEAR(next.path.length(), 0.8, 1e-9);
+  EXPECT_TRUE(next.ends_move);
+}
+
 // Moved while it stood: its commands from one on are others, and held back with those that were.
 TEST(PathRide, WhatItWasMovedAwayFromIsHeldBack) {
   const std::vector<PlannedMotion> motions = StraightOn();

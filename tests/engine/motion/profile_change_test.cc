@@ -208,6 +208,21 @@ TEST(FromFits, JustAndJustNot) {
   EXPECT_FALSE(FromFits({5.0, 50.0, 0.0}, 5.0, 49.0, kLimits));
 }
 
+// Below 1 mm/s and with an acceleration of 1 as elsewhere; and an acceleration that ends just where
+// the way does, as fast as is wanted there, needs nothing more.
+TEST(FromFits, SmallFiguresAndExactWays) {
+  EXPECT_TRUE(FromFits({0.0, 0.5, 0.0}, 0.0018, 0.0, kLimits));  // 0.0017678 mm
+  EXPECT_FALSE(FromFits({0.0, 0.5, 0.0}, 0.0017, 0.0, kLimits));
+  // 1 mm/s2 at 0.25 mm/s3: 4 s from 5 to 7 mm/s, from there to rest.
+  const PathLimits soft{9.0, 4.0, 0.25};
+  const double total = 4.0 * (5.0 + 4.0 / 3.0) + 7.0 * std::sqrt(7.0 / 0.25);
+  EXPECT_TRUE(FromFits({0.0, 5.0, 1.0}, total * 1.0001, 0.0, soft));
+  EXPECT_FALSE(FromFits({0.0, 5.0, 1.0}, total * 0.9999, 0.0, soft));
+  const double up = 0.03 * (18.0 + 1200.0 * 0.03 / 3.0), down = 0.03 * (18.0 - 1200.0 * 0.03 / 3.0);
+  EXPECT_TRUE(FromFits({0.0, 18.0, 1200.0}, up, 36.0, kLimits));
+  EXPECT_TRUE(FromFits({0.0, 18.0, -1200.0}, down, 0.0, kLimits));
+}
+
 std::vector<PlannedMotion> RightAngle() {
   std::vector<MoveCommand> chain(2);
   chain[0].path = PathPiece::Line({}, {{100, 0, 0}});

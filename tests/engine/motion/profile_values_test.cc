@@ -96,15 +96,17 @@ TEST(ProfileValues, ExactlyEnoughIsEnoughToSlowDown) {
 TEST(ProfileValues, NeighbouringSpeedsAreOne) {
   const PathLimits limits{500.0, 2000.0, 40000.0};
   const double v0 = 499.0, v1 = std::nextafter(v0, 600.0);
-  const double length = 1e-3 * RampLength(v0, v1, limits);
-  for (const bool up : {true, false}) {
-    const SpeedProfile p = SpeedProfile::Span(length, up ? v0 : v1, up ? v1 : v0, limits);
-    ASSERT_EQ(p.phase_count(), 1);
-    EXPECT_EQ(p.phase(0).start.acceleration, 0.0);
-    EXPECT_EQ(p.phase(0).jerk, 0.0);
-    EXPECT_DOUBLE_EQ(p.duration_s(), length / v0);
-    EXPECT_EQ(p.end().speed, up ? v1 : v0);
-    EXPECT_EQ(p.peak_speed(), v1);
+  for (const double share : {1e-3, 0.9995}) {
+    const double length = share * RampLength(v0, v1, limits);
+    for (const bool up : {true, false}) {
+      const SpeedProfile p = SpeedProfile::Span(length, up ? v0 : v1, up ? v1 : v0, limits);
+      ASSERT_EQ(p.phase_count(), 1);
+      EXPECT_EQ(p.phase(0).start.acceleration, 0.0);
+      EXPECT_EQ(p.phase(0).jerk, 0.0);
+      EXPECT_DOUBLE_EQ(p.duration_s(), length / v0);
+      EXPECT_EQ(p.end().speed, up ? v1 : v0);
+      EXPECT_EQ(p.peak_speed(), v1);
+    }
   }
   const double ramp_s = RampTime(100.0, 250.0, limits);
   const double ramp_mm = RampLength(100.0, 250.0, limits);
@@ -112,6 +114,8 @@ TEST(ProfileValues, NeighbouringSpeedsAreOne) {
   ASSERT_EQ(squeezed.phase_count(), 3);
   EXPECT_NEAR(squeezed.duration_s(), ramp_s * (1.0 - 1e-8), 1e-12);
   EXPECT_NEAR(squeezed.phase(1).start.acceleration, 2000.0, 1e-3);
+  const SpeedProfile less = SpeedProfile::Span(ramp_mm * (1.0 - 1e-10), 100.0, 250.0, limits);
+  EXPECT_NEAR(less.duration_s(), ramp_s * (1.0 - 1e-10), 1e-13);
 }
 
 // Where it ends it neither speeds up nor slows down; a part that ends on the
@@ -189,6 +193,11 @@ TEST(ProfileValues, AnAccelerationOfOneIsEnded) {
   EXPECT_NEAR(p.peak_speed(), 10.5, 1e-12);
   EXPECT_NEAR(p.At(1.0).speed, 10.5, 1e-12);
   EXPECT_EQ(p.At(0.0).acceleration, 1.0);
+  // With a jerk of a quarter in 4 s, from 5 to 7 mm/s.
+  const SpeedProfile longer = SpeedProfile::From({0.0, 5.0, 1.0}, 400.0, 0.0, {9.0, 4.0, 0.25});
+  EXPECT_EQ(longer.phase(0).jerk, -0.25);
+  EXPECT_NEAR(longer.phase(0).duration_s, 4.0, 1e-12);
+  EXPECT_NEAR(longer.At(4.0).speed, 7.0, 1e-12);
 }
 
 }  // namespace

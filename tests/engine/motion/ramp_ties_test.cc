@@ -22,6 +22,12 @@ std::vector<double> SplitsOf(const RampPlan& plan) {
   return lengths;
 }
 
+double SpeedAt(const SpeedProfile& ramp, double s) {
+  SpeedProfile::Place place;
+  ramp.Advance(place, s);
+  return ramp.SpeedAt(place);
+}
+
 // From 20 mm/s to rest over 0.6 and 0.25 mm, the first at 20 mm/s at most: one
 // ramp that is nowhere faster than it begins takes the place of both. It
 // cruises and brakes for 0.447 mm.
@@ -160,6 +166,36 @@ TEST(RampTies, ABendIsLookedAtFromItsBegin) {
   cells[0].most = bend;
   plan.Plan(cells, 60.0);
   EXPECT_EQ(plan.ramps().size(), 2U);
+}
+
+// One ramp over 1 and 3 mm is at 47 mm/s between them. Where a little less is allowed there, or at
+// a place of a bend on the way, by more than last digits, that is kept.
+TEST(RampTies, LimitsAreKeptButForLastDigits) {
+  const std::vector<RampCell> two{{.length = 1.0, .limits = kFast},
+                                  {.length = 3.0, .limits = kFast}};
+  const auto plan_of = [](std::vector<RampCell> cells) {
+    TimeByLevelOne(cells, 0.0, 0.0);
+    RampPlan plan;
+    plan.Plan(cells, 0.0);
+    return plan;
+  };
+  const RampPlan of_two = plan_of(two);
+  ASSERT_EQ(of_two.ramps().size(), 1U);
+  const double between = SpeedAt(of_two.ramps()[0], 1.0);
+  ASSERT_NEAR(between, 47.0, 1.0);
+
+  std::vector<RampCell> capped = two;
+  capped[0].end_cap = between * (1.0 - 1e-10);
+  const RampPlan of_capped = plan_of(capped);
+  const RampPlan::Timing first = of_capped.timing()[0];
+  EXPECT_LE(SpeedAt(of_capped.ramps()[first.ramp], first.to), capped[0].end_cap * (1.0 + 2e-11));
+
+  const double most = SpeedAt(of_two.ramps()[0], 0.75) * (1.0 - 1e-7);
+  const std::vector<double> bend{150.0, 150.0, 150.0, most, 150.0};
+  std::vector<RampCell> bent = two;
+  bent[0].most = bend;
+  const RampPlan of_bent = plan_of(bent);
+  EXPECT_LE(SpeedAt(of_bent.ramps()[of_bent.timing()[0].ramp], 0.75), most * (1.0 + 1e-8));
 }
 
 }  // namespace

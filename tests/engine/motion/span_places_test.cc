@@ -159,11 +159,40 @@ TEST(SpanPlaces, ACurveKeepsTheLimitsOfAllThatItTouches) {
           {.speed = 50.0, .acceleration = weaker ? 100.0 : 400.0, .jerk = weaker ? 3000.0 : 5000.0},
           true);
     }
-    const PathLimits near = LimitsOnCurve(legs, 1, 0.9), far = LimitsOnCurve(legs, 1, 1.1);
-    EXPECT_EQ(near.acceleration, 400.0) << weak;
-    EXPECT_EQ(near.jerk, 5000.0) << weak;
+    for (const double within : {0.9, 1.0}) {  // also where it ends at the end of a move
+      const PathLimits near = LimitsOnCurve(legs, 1, within);
+      EXPECT_EQ(near.acceleration, 400.0) << weak << within;
+      EXPECT_EQ(near.jerk, 5000.0) << weak << within;
+    }
+    const PathLimits far = LimitsOnCurve(legs, 1, 1.1);
     EXPECT_EQ(far.acceleration, 100.0) << weak;
     EXPECT_EQ(far.jerk, 3000.0) << weak;
+  }
+}
+
+// At 47.5 mm/s, 0.95 of what it may be passed at, a curve that takes all that an axis has takes
+// 0.9025 of it. Of 500 mm/s2 the rest is left for a speed that changes, of the jerk all; and at 50
+// mm/s an axis of 100 mm/s moves 2 mm at most for each mm of the way. motion.md 5.4
+TEST(SpanPlaces, ASpeedThatChangesLeavesAnAxisItsBend) {
+  for (int axis = 0; axis < 5; ++axis) {
+    MachineLimits machine = PlainMachine();
+    machine.axes.speed.fill(100.0);
+    machine.axes.acceleration[axis] = 500.0;
+    machine.axes.jerk[axis] = 8000.0;
+    LegStage legs(machine, Planner::kWindow);
+    for (const MoveCommand& move : ChainOf({{kEast, 1.0}, {kNorth, 1.0}}))
+      legs.Add(move, {.speed = 100.0, .acceleration = 400.0, .jerk = 5000.0}, true);
+    Span span;
+    span.corner_move = 0;
+    span.report.cut_mm = 0.5;
+    span.stretches.open = 47.5;
+    const PathLimits limits = LimitsInStretches(legs, span);
+    EXPECT_EQ(limits.speed, 47.5) << axis;
+    EXPECT_NEAR(limits.acceleration, 0.0975 * 500.0 * (50.0 / 100.0), 1e-9) << axis;
+    EXPECT_NEAR(limits.jerk, 8000.0 * (50.0 / 100.0), 1e-9) << axis;
+    span.may_vary = true;  // the axes follow whatever the tip does
+    EXPECT_EQ(LimitsInStretches(legs, span).acceleration, 400.0) << axis;
+    EXPECT_EQ(LimitsInStretches(legs, span).jerk, 5000.0) << axis;
   }
 }
 
@@ -225,6 +254,42 @@ TEST(SpanPlaces, ASlowPointWithinACurveIsKept) {
       }
     }
   }
+}
+
+// And so is one at the very end of a curve, which takes half of the 2 mm behind the corner.
+TEST(SpanPlaces, ASlowPointAtTheEndOfACurveIsKept) {
+  std::vector<MoveCommand> chain = ChainOf({{kEast * 10.0, 1.0}, {kNorth, 0.4}, {kNorth, 0.4}});
+  chain[1].overshoot_fraction = 0.1;
+  int bends = 0;
+  double end = 0.0;
+  for (const PlannedMotion& motion : Plan(chain, PlainMachine())) {
+    if (motion.path.kind() != PathPiece::Kind::kBlend) continue;
+    ++bends;
+    end = motion.path.to().point.y();
+    EXPECT_LE(motion.speed.peak_speed(), 4.0 * (1.0 + 1e-9));
+  }
+  EXPECT_GT(bends, 1);
+  EXPECT_NEAR(end, 1.0, 1e-9);
+}
+
+// Two moves that are one leg have each its own part of the ramps, however short the first one is.
+TEST(SpanPlaces, EachMoveOfALegHasItsPart) {
+  for (const double first : {0.5, 1.0, 2.0}) {
+    const std::vector<PlannedMotion> motions =
+        Plan(ChainOf({{kEast * first, 0.4}, {kEast * 9.0, 0.4}}), PlainMachine());
+    ASSERT_EQ(motions.size(), 2U) << first;
+    ExpectSeams(motions);
+  }
+}
+
+// Speeds that differ by one part in 1e8 are two, those that differ by last digits one.
+TEST(SpanPlaces, LastDigitsMakeNoLeg) {
+  const auto dump_of = [](double more) {
+    return DumpOf({{kEast, 0.4}, {kEast, 0.4 * (1.0 + more)}});
+  };
+  EXPECT_THAT(dump_of(1e-8), HasSubstr("span 1"));
+  EXPECT_THAT(dump_of(1e-10), HasSubstr("span 0"));
+  EXPECT_THAT(dump_of(1e-10), testing::Not(HasSubstr("span 1")));
 }
 
 }  // namespace

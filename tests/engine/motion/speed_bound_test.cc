@@ -37,10 +37,15 @@ TEST(SpeedBound, KnowsTheRadius) {
 }
 
 // The same where the head stands upright at one third of the way, in a turn of 0.88 rad, half way,
-// in one of 0.6, or at an end: those places are looked at. x' = 1 + 3 (turn / 1 rad) cos A.
+// in one of 0.6 or of 60, or at an end: those places are looked at. x' = 1 + 3 (turn / 1 rad) cos
+// A.
 TEST(SpeedBound, LooksAtEqualSteps) {
-  for (const auto& [turn, share] :
-       {std::pair{0.88, 1.0 / 3.0}, {0.6, 0.5}, {0.01, 0.5}, {0.88, 0.0}, {0.88, 1.0}}) {
+  for (const auto& [turn, share] : {std::pair{0.88, 1.0 / 3.0},
+                                    {0.6, 0.5},
+                                    {60.0, 0.5},
+                                    {0.01, 0.5},
+                                    {0.88, 0.0},
+                                    {0.88, 1.0}}) {
     const PathPiece line = PathPiece::Line({{0, 0, 0}, -turn * share, kPi / 2},
                                            {{100, 0, 0}, turn * (1.0 - share), kPi / 2});
     const SpeedBound bound = TightestBound(line, Head{}, StandardMachine(), 1000.0);

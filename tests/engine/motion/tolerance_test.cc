@@ -189,6 +189,40 @@ TEST(Tolerance, LinesBeginWhereTheMachineIs) {
   EXPECT_NEAR(motions[2].path.length(), 4e-4, 1e-12);
 }
 
+// In COORD ROBOT a move to where it is believed to be bridges it too; an arc, however short, stays
+// where it is.
+TEST(Tolerance, WhatBridgesAGapIsStraight) {
+  Planner in_axes(StandardMachine());
+  for (const PathPiece& path : {PathPiece::Joint({}, {{10, 0, 0}}),
+                                PathPiece::Joint({{10.0005, 0, 0}}, {{10.0005, 0, 0}})}) {
+    MoveCommand move = MoveAlong(path);
+    move.kind = MoveCommand::Kind::kPointToPointAxes;
+    ASSERT_TRUE(in_axes.Append(move));
+  }
+  const auto joints = Drained(in_axes);
+  ASSERT_EQ(joints.size(), 2u);
+  EXPECT_EQ(joints[1].path.from().point.x(), 10.0);
+  EXPECT_EQ(joints[1].path.to().point.x(), 10.0005);
+
+  Planner planner(StandardMachine());
+  ASSERT_TRUE(planner.Append(LineOf({}, {{10, 0, 0}})));
+  ASSERT_TRUE(planner.Append(MoveAlong(
+      PathPiece::Circle({{10.0005, 0, 0}}, {10.0005, 0.5, 0}, {0, 0, 1}, 1.5, 0.0, 0.0))));
+  const auto motions = Drained(planner);
+  ASSERT_EQ(motions.size(), 2u);
+  EXPECT_EQ(motions[1].path.kind(), PathPiece::Kind::kArc);
+  EXPECT_EQ(motions[1].path.from().point.x(), 10.0005);
+}
+
+// The least ACCEL is enough, also where it makes little of a way that counts as one: 3 m in COORD
+// ROBOT at 2 mm/s2.
+TEST(Tolerance, TheLeastAccelerationIsEnough) {
+  MoveCommand move = MoveAlong(PathPiece::Joint({}, {{3000, 0, 0}}));
+  move.kind = MoveCommand::Kind::kPointToPointAxes;
+  move.acceleration_fraction = 0.001;
+  EXPECT_TRUE(Planner(StandardMachine()).Append(move));
+}
+
 // An arc that begins within 1e-6 mm of where the line ends goes on from it; farther off the
 // machine stands between them.
 TEST(Tolerance, ArcsGoOnFromWhereTheLineEnds) {

@@ -96,5 +96,17 @@ TEST(CurveCutter, AnotherChordEndsTheList) {
   for (int k = 0; k < 20; ++k) EXPECT_EQ(long_list.Find(k, k + 1) != nullptr, k < 16) << k;
 }
 
+// A head that hangs straight down turns A without moving the tip: one chord, whatever is allowed.
+TEST(CurveCutter, ATipThatStandsIsOneChord) {
+  const motion::PathPiece path =
+      motion::PathPiece::Joint({{0, 0, 300}, 0.0, 0.0}, {{0, 0, 300}, 0.4, 0.0});
+  PartShape shape({path, kSwingArm, 0.0, path.length()});
+  const PartCurve& curve = shape.curve();
+  const CurveCutter cutter(curve, shape.chords(), 0.0);
+  const CurvePlace begin{curve.begin(), curve.Tip(curve.begin())};
+  ASSERT_EQ(curve.Tip(curve.end()), begin.tip);
+  EXPECT_EQ(cutter.NextCut(begin).p, curve.end());
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

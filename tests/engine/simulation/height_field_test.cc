@@ -192,6 +192,7 @@ TEST(HeightField, CellsCoverTheBlock) {
   };
   EXPECT_EQ(cells(3.0, 0.1), 30u);
   EXPECT_EQ(cells(3.01, 0.1), 31u);
+  EXPECT_EQ(cells(3.00000005, 0.1), 31u);  // more than the last digits
   EXPECT_EQ(cells(0.01, 1.0), 1u);
   const Stock most{.x_max = 8192.0, .y_max = 8192.0, .bottom = -1.0, .top = 0.0, .cell = 1.0};
   EXPECT_TRUE(CheckStock(most).ok());  // 1 << 26 cells

@@ -184,6 +184,14 @@ TEST_F(MilledLimits, TheFastestPass) {
   EXPECT_EQ(Figures().pass_place.step, 1);  // of passes as deep the first
 }
 
+// A way of less than a millimetre is a way: from 22.5 to 23.25 mm a quarter lies further out than
+// the diameter beside the edge at 20.
+TEST_F(MilledLimits, AShortWayBesideTheBlockIsTold) {
+  Go({22.5, 6, 4}, {23.25, 6, 4}, 8.0);
+  EXPECT_NEAR(Figures().beside_mm, 0.25, 1e-12);
+  EXPECT_EQ(Figures().beside_x_high_mm, 3.25);
+}
+
 // What turns the spindle: its speed, told while it stands or turns, and not one that was set by
 // hand. Two edges at 6000 rpm and 10 mm/s take 0.05 mm each; nobody knows at 0 rpm.
 TEST(MillingSpindle, ChipsGoByItsSpeed) {
@@ -305,6 +313,17 @@ TEST(MillTool, LimitsOfTheShank) {
           {.radius_mm = 1.5, .flute_mm = 5.0, .holder_radius_mm = 9.0, .holder_from_mm = 4.999}),
       "the holder begins below the end of what cuts");
   EXPECT_EQ(refused({.radius_mm = 1.5, .flute_mm = 5.0}), "");  // no holder, wherever it begins
+}
+
+// A cone of 60 degrees and 6 mm is 3 sqrt(3) mm high, and a holder may be as narrow as it likes.
+TEST(MillTool, MeasuresAreToldInMicrometres) {
+  const Result<MillTool> cone = ParseTool("vee:6:60:flute=5");
+  ASSERT_FALSE(cone);
+  EXPECT_EQ(std::string(cone.error().detail),
+            "the tool cuts for 5 mm, and its end alone is 5.196 mm high: make flute longer");
+  const Result<MillTool> held = ParseTool("flat:0.3:holder=1@25");
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->holder_radius_mm, 0.5);
 }
 
 }  // namespace

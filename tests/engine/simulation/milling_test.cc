@@ -200,7 +200,7 @@ TEST(MillingText, ReadsShanksAndHolders) {
   const std::pair<const char*, const char*> refused[] = {
       {"flat:3:flute=2:flute=3", ": at 16, 'flute=3' gives flute again: write flat:3"},
       {"flat:3:flutes=2:holder=20@9:flutes=2", ": at 29, 'flutes=2' gives flutes again"},
-      {"flatt:3", "'flatt' is no shape; did you mean flat?"},
+      {"flatt:3", ": at 1, 'flatt' is no shape; did you mean flat?"},
       {"bal:3", "'bal' is no shape; did you mean ball?"},
       {"vea:6:60", "'vea' is no shape; did you mean vee?"},
       {"falt:3:flute=9", "'falt' is no shape; did you mean flat?"},
@@ -215,6 +215,8 @@ TEST(MillingText, ReadsShanksAndHolders) {
       {"flat:3:lenght=4", ": at 8, 'lenght=4' is no part of a tool; did you mean flute=LENGTH?"},
       {"flat:3:teeth=4", "did you mean flutes=NUMBER?"},
       {"flat:3:flutes", "is no tool"},
+      {"flat:3:flute=9:=6", ": at 16, '=6' is no part of a tool"},
+      {"vee:6:60:0.2:1", "is no tool"},
       {"flat:3:flute=9:shank", ": at 16, 'shank' has no value"},
       {"flat:3:flutes=1.5", "at 8, 'flutes=1.5': write a whole number from 1 to 100"},
       {"flat:3:holder=20", "at 8, 'holder=20': write its width and where it begins, holder=20@25"},
@@ -352,6 +354,20 @@ TEST(MillingRecorder, TellsWhichTilesHaveChanged) {
     EXPECT_EQ(changed({10, 110, -1}, {10, 65, -1}), (Tiles{{0, 0}, {0, 64}}));
     EXPECT_EQ(changed({10, 10, 1}, {63, 63, 1}), Tiles{});
   }
+}
+
+// A way through what is gone already changes no tile.
+TEST(MillingRecorder, AWayThroughAGrooveChangesNothing) {
+  const Milling wide{
+      .stock = {.x_max = 192.0, .y_max = 192.0, .bottom = -5.0, .top = 0.0, .cell = 1.0},
+      .tool = {.shape = MillTool::Shape::kFlat, .radius_mm = 2.0}};
+  MillingRecorder recorder(MillShape(), wide);
+  EXPECT_TRUE(recorder.TakeChanges(100).empty());
+  Tell(recorder, {10, 10, -1}, {50, 10, -1}, 8.0, 1);
+  EXPECT_EQ(recorder.TakeChanges(100).size(), 1u);
+  Tell(recorder, {50, 10, -1}, {10, 10, -1}, 8.0, 2);
+  EXPECT_FALSE(recorder.any_change_left());
+  EXPECT_TRUE(recorder.TakeChanges(100).empty());
 }
 
 // A turn of the rotary axis alone takes nothing off, wherever the tool stands.

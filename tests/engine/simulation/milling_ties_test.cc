@@ -55,7 +55,9 @@ TEST(MillingTies, WithoutASpeedOfTheSpindleThereIsNoChip) {
       .least_mm = 0.01, .most_mm = 0.05, .speed_most_m_min = 100.0, .plunge_most_mm = 0.02};
   TiedMilling mill(milling);
   mill.Go({2, 6, 4}, {18, 6, 4}, 8.0);
+  mill.Go({10, 10, 9}, {10, 10, 4}, 8.0, MotionUse::kPlunge);
   const ChipFigures none = *mill.Figures().chips;
+  EXPECT_EQ(none.plunge_percent, 0.0);
   EXPECT_EQ(none.thin_percent, 0.0);
   EXPECT_EQ(none.thick_percent, 0.0);
   EXPECT_EQ(none.speed_percent, 0.0);

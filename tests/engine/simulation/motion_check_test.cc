@@ -77,6 +77,16 @@ TEST(MotionCheck, AProgramIsLookedAtWithTheOffsetOfItsCaller) {
   EXPECT_EQ(far.findings[0].program, 44);
 }
 
+// A program of a single step is a part of its caller as well: it is not looked at by itself, where
+// what it calls would have no offset.
+TEST(MotionCheck, AProgramOfOneStepIsLookedAtWithItsCaller) {
+  const std::string part = kPart.substr(kPart.find('\n') + 1);
+  const std::map<int, std::string> programs = {
+      {44, "CALL 46\n"}, {45, "SYSDEF (-1000.,0.,-300.,0.,0.,0.)\nCALL 44\n"}, {46, part}};
+  EXPECT_TRUE(Checked(programs, {44, 45, 46}).findings.empty());
+  EXPECT_EQ(Checked(programs, {44}).findings.size(), 2U);
+}
+
 // OPT-4.55: a tool that is 500 mm shorter brings the column below the end of Z: -1000 + 300 - 500 =
 // -1200 is inside -1300, -1150 + 300 - 500 = -1350 is 50 outside.
 TEST(MotionCheck, TheToolCounts) {
@@ -159,6 +169,20 @@ TEST(MotionCheck, DoubtsATravelErrorThatHangsOnAnOffsetBefore) {
             "BAD; OPT-E7301 A of the target leaves its travel by 0.400 rad @2");
   // One that is sure speaks for those that are not.
   EXPECT_EQ(VerdictOfCheck("COORD ABSOL\n" + x + "SYSDEF\n" + x), bad + "4");
+}
+
+// That one move is sure takes no doubt from the next one: each is asked for itself.
+TEST(MotionCheck, EachTravelErrorHasItsOwnDoubt) {
+  const MotionCheck check = Checked({{45,
+                                      "COORD ROBOT\nMOVE (4000.,0.,0.,0.,0.)\nCOORD ABSOL\n"
+                                      "MOVE (4100.,0.,0.,0.,0.)\n"}},
+                                    {45});
+  ASSERT_EQ(check.findings.size(), 2U);
+  EXPECT_EQ(check.findings[0].step, 2);
+  EXPECT_TRUE(IsError(check.findings[0].severity));
+  EXPECT_EQ(check.findings[1].step, 4);
+  EXPECT_FALSE(IsError(check.findings[1].severity));
+  EXPECT_NE(check.findings[1].detail.find(", if no SYSDEF is in force before"), std::string::npos);
 }
 
 // OPT-7.104: a SYSDEF of variables that an operator, or another program, set before.
@@ -347,6 +371,13 @@ TEST(MotionCheck, AMissingProgramIsAnErrorOfAWholeMemory) {
             "DOUBTFUL; CELL-E9608");
   EXPECT_EQ(verdict("VL[5] = ON\nIF VL[5] THEN 10\nCALL 77\n10 SPEED 5\n", MemoryGiven::kWhole),
             "GOOD");
+}
+
+// Of two errors of one program the first is told, and none as that of a program that it calls.
+TEST(MotionCheck, TheFirstErrorOfAProgramIsItsVerdict) {
+  EXPECT_EQ(VerdictOfCheck("SYSDEF\nCOORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\nVR[1] = 5.\n"
+                           "VR[2] = VR[1] / (VR[1] - 5.)\n"),
+            "BAD; OPT-E7301 X of the target leaves its travel by 400.000 mm @3");
 }
 
 // Why a check did not come to the end has an advice that fits.

@@ -106,6 +106,28 @@ TEST(PageEdges, DotsOnTheEdgesAreDrawn) {
   EXPECT_EQ(pierces({{-0.5, 200, 0}, {800.5, 200, 0}, {400, -0.5, 0}, {400, 400.5, 0}}), 0u);
 }
 
+// Where there are more than 300 pierces, each is small; those less than a pixel apart are one.
+TEST(PageEdges, ManyPiercesAreSmall) {
+  const machine::MachineShape shape;
+  const auto drawn = [&](int count, double apart) {
+    PathSketch sketch(shape, 1000);
+    for (int k = 0; k < count; ++k) {
+      const MachinePoint place{42.0 + apart * (k % 30), 100.0 + 20.0 * (k / 30), 0.0};
+      SketchLine(sketch, place - motion::MachineVector{0, 0, 1}, place);
+      sketch.AddPierce();
+    }
+    std::string panel;
+    DrawPanel({.sketch = sketch, .shape = shape, .elements_max = 1000}, MillimetrePanel(800.0), 1,
+              panel);
+    return std::pair(CountOf(panel, "r=\"4.2\" fill=\"#e8590c\""),
+                     CountOf(panel, "r=\"2.2\" fill=\"#e8590c\""));
+  };
+  EXPECT_EQ(drawn(300, 20.0), std::pair(std::size_t{300}, std::size_t{0}));
+  EXPECT_EQ(drawn(301, 20.0), std::pair(std::size_t{0}, std::size_t{301}));
+  EXPECT_EQ(drawn(2, 3.0).first, 2u);
+  EXPECT_EQ(drawn(2, 0.5).first, 1u);
+}
+
 // The scale bar of 90 px at least, with 60 for its figure and 44 for the name of the axis: 100 mm
 // where that has room, else a quarter as long at least.
 TEST(PageEdges, TheScaleBarHasRoom) {
@@ -346,6 +368,14 @@ TEST(FamilyEdges, WhoCompares) {
                      machine::Parameters(mill->parameters()));
   ASSERT_TRUE(streams);
   EXPECT_TRUE(streams->steps.empty());
+  const auto longer = families::Diff(*mill, {.object = "!MC0;"}, {.object = "!MC0;PU100,200;"},
+                                     machine::Parameters(mill->parameters()));
+  ASSERT_TRUE(longer);
+  ASSERT_FALSE(longer->steps.empty());
+  for (const machine::StepChange& step : longer->steps) {
+    EXPECT_EQ(step.before, "");
+    EXPECT_NE(step.after, "");
+  }
   const auto compiled = [&](std::string_view text) {
     return laser->tools()
         ->Compile({.name = "a.S", .bytes = text}, machine::Parameters(laser->parameters()), {})

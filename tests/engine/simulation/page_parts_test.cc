@@ -149,5 +149,81 @@ TEST(PageParts, ADifferenceOfTooManyPairsSaysSo) {
   EXPECT_EQ(told(4473), 1u);
 }
 
+// The last tag of its kind before a text of a page, without its end.
+std::string TagBefore(const std::string& page, std::string_view tag, std::string_view text) {
+  const std::size_t named = page.find(text);
+  EXPECT_NE(named, std::string::npos) << text;
+  const std::size_t begin = page.rfind(tag, named);
+  return page.substr(begin, page.find('>', begin) - begin);
+}
+
+// The look of what was lost is 44 px long, too, and how much that is stands below its name, smaller
+// and in its colour.
+TEST(PageParts, TheLegendHasWhatWasLost) {
+  PathSketch sketch({}, 100);
+  SketchWay(sketch, {0, 0, 0}, {100, 80, 0}, {.use = machine::MotionUse::kCut});
+  sketch.AddLost({.from = {100, 80, 0}, .to = {130, 80, 0}});
+  const std::string page = PicturePage(sketch, {}, {}, {});
+  const std::string line = TagBefore(page, "<line", ">beyond the travel, not cut<");
+  EXPECT_EQ(CountOf(line, " x1=\"1282\" "), 1u) << line;
+  EXPECT_EQ(CountOf(line, " x2=\"1326\" "), 1u) << line;
+  EXPECT_EQ(CountOf(line, " class=\"lost\" "), 1u) << line;
+  const std::string lost = TagBefore(page, "<text", ">30.000 mm lost<");
+  EXPECT_EQ(CountOf(lost, " x=\"1340\" "), 1u) << lost;
+  EXPECT_EQ(CountOf(lost, std::string(" font-size=\"12\" fill=\"") + kLostColour + '"'), 1u)
+      << lost;
+}
+
+// Reasons, and how many more there are, stand 12 px within the column.
+TEST(PageParts, ReasonsStandWithinTheColumn) {
+  RunReport report;
+  for (int k = 0; k < 6; ++k) {
+    report.judgement.reasons.push_back({.code = ErrorCode::kCellGouge,
+                                        .verdict = machine::Verdict::kBad,
+                                        .said = "reason " + std::to_string(k)});
+  }
+  const std::string page = PicturePage(PathSketch({}, 10), {}, report, {});
+  for (const char* text : {">reason 0<", ">and 2 more<"}) {
+    const std::string tag = TagBefore(page, "<text", text);
+    EXPECT_EQ(CountOf(tag, " x=\"1294\" "), 1u) << tag;
+    EXPECT_EQ(CountOf(tag, " font-size=\"12\" "), 1u) << tag;
+  }
+}
+
+// The machine and what was changed of it stand below the title, as far as 110 px before the margin
+// of 36, where the time begins: 1418 px of 1600. A W is 0.944 of its size wide, and 1.12 times that
+// in the widest font.
+TEST(PageParts, AMachineLeavesRoomForTheTime) {
+  const std::string wide(300, 'W');
+  RunReport report;
+  report.family = wide;
+  report.machine.changes = {{wide, "1", "2"}};
+  const std::string page = PicturePage(PathSketch({}, 10), {}, report, {});
+  for (const auto& [tag, size] : {std::pair{"<text x=\"36\" y=\"70\" font-size=\"14\" ", 14.0},
+                                  std::pair{"<text x=\"36\" y=\"86\" font-size=\"12\" ", 12.0}}) {
+    const std::size_t at = page.find(tag);
+    ASSERT_NE(at, std::string::npos) << tag;
+    const std::string shown = page.substr(at, page.find("</text>", at) - at);
+    const double width_px =
+        0.944 * size * 1.12 * static_cast<double>(std::ranges::count(shown, 'W'));
+    EXPECT_TRUE(shown.ends_with("…")) << shown;
+    EXPECT_LT(width_px, 1418.0);
+    EXPECT_GT(width_px, 1418.0 - 120.0);  // a word before it, the three points, part of a letter
+  }
+}
+
+// Ground that differs by a hundredth of a millimetre is flat, and has no shades.
+TEST(PageParts, ShadesBeginAtAHundredth) {
+  const auto shaded = [](double depth_mm) {
+    PathSketch sketch({}, 100);
+    const machine::MotionDone cut{.use = machine::MotionUse::kCut};
+    SketchWay(sketch, {0, 20, -1}, {100, 20, -1}, cut);
+    SketchWay(sketch, {0, 40, -1.0 - depth_mm}, {100, 40, -1.0 - depth_mm}, cut);
+    return CountOf(PicturePage(sketch, {}, {}, {}), ">cut, Z ");
+  };
+  EXPECT_EQ(shaded(0.005), 0u);
+  EXPECT_EQ(shaded(0.015), 1u);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

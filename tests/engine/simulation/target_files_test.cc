@@ -179,6 +179,40 @@ TEST(TargetFiles, ABodyBesideTheBlockIsRefused) {
   EXPECT_EQ(heights.error().code, ErrorCode::kCellInvalidArgument);
 }
 
+// Half a thousandth of a cell is no rounding: centres that far beside a body are not under it.
+TEST(TargetFiles, ACentreBesideABodyIsNotUnderIt) {
+  const Stock block{.x_max = 5.0, .y_max = 5.0, .bottom = 0.0, .top = 3.0, .cell = 1.0};
+  constexpr float kLow = 0.5005f;
+  constexpr float kHigh = 3.4995f;
+  std::vector<StlTriangle> square(
+      1, StlTriangle{{{{kLow, kLow, 2.0f}, {kHigh, kLow, 2.0f}, {kHigh, kHigh, 2.0f}}}});
+  square.push_back(StlTriangle{{{{kLow, kLow, 2.0f}, {kHigh, kHigh, 2.0f}, {kLow, kHigh, 2.0f}}}});
+  const auto heights = TargetOfBody(square, block);
+  ASSERT_TRUE(heights);
+  for (std::size_t row = 0; row < 5; ++row) {
+    for (std::size_t column = 0; column < 5; ++column) {
+      const float height = (*heights)[row * 5 + column];
+      if (column >= 1 && column <= 2 && row >= 1 && row <= 2) {
+        EXPECT_EQ(height, 2.0f) << column << ' ' << row;
+      } else {
+        EXPECT_TRUE(std::isnan(height)) << column << ' ' << row;
+      }
+    }
+  }
+}
+
+// However small a facet is, what lies under it is as high as it: this one has 0.02 um each way.
+TEST(TargetFiles, ASmallFacetCounts) {
+  const Stock block{.x_max = 5.0, .y_max = 5.0, .bottom = 0.0, .top = 3.0, .cell = 1.0};
+  const std::vector<StlTriangle> facet(
+      1, StlTriangle{
+             {{{0.49999f, 0.49999f, 2.0f}, {0.50001f, 0.49999f, 2.0f}, {0.5f, 0.50001f, 2.0f}}}});
+  const auto heights = TargetOfBody(facet, block);
+  ASSERT_TRUE(heights);
+  EXPECT_EQ((*heights)[0], 2.0f);
+  EXPECT_TRUE(std::isnan((*heights)[1]));
+}
+
 // 400 x 400 cells under 100,000 triangles that each cover all of them are 16,000 million looks.
 TEST(TargetFiles, ABodyThatLiesOverItselfTooOftenIsRefused) {
   const Stock stock{.x_max = 40.0, .y_max = 40.0, .bottom = -1.0, .top = 0.0, .cell = 0.1};

@@ -80,6 +80,23 @@ TEST(Target, AWallMayStandOffByACell) {
   EXPECT_EQ(stands_off(-2).left_mm, 1.0);
 }
 
+// So may one along X: rows are neighbours as columns are.
+TEST(Target, AWallAlongXMayStandOffByACell) {
+  const auto stands_off = [](int cells) {
+    HeightField field = TargetBlock();
+    std::vector<float> heights(80, 0.0f);
+    for (std::size_t cell = 0; cell < 40; ++cell) heights[cell] = -1.0f;  // four of eight rows
+    const double edge = -2.0 + 0.5 * (4 + cells);
+    for (double x = 1.0; x <= 6.0; x += 0.5)
+      field.Cut({.radius_mm = 1.0}, {x, -9, -1}, {x, edge - 1.0, -1});
+    return CompareWithTarget(
+        field, {.heights = std::make_shared<const std::vector<float>>(std::move(heights))});
+  };
+  for (const int cells : {-1, 0, 1}) EXPECT_EQ(stands_off(cells).good_percent, 100.0) << cells;
+  EXPECT_EQ(stands_off(2).deep_mm, 1.0);
+  EXPECT_EQ(stands_off(-2).left_mm, 1.0);
+}
+
 // Just the tolerance is good; a cell of which the target says nothing is not compared, and is no
 // neighbour either. Nothing is asked for below the block.
 TEST(Target, HasATolerance) {

@@ -7,12 +7,17 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <thread>
 #include <vector>
 
+#include "engine/core/hex.h"
+#include "engine/families/families.h"
 #include "proto/bridge/program_stream.h"
+#include "proto/bridge/sha256.h"
 #include "proto/bridge/spooled_bytes.h"
+#include "proto/bridge/ticket.h"
 
 namespace rmlcell::bridge {
 namespace {
@@ -66,6 +71,48 @@ TEST(GivenBack, WhatIsReadAsItComes) {
   ASSERT_NE(opened->stream, nullptr);
   opened->bytes.ReadAll();
   ExpectGivenBack(opened->bytes, text);
+  std::filesystem::remove(path);
+}
+
+// LIVE-5.02: the digest of a program is made of all its bytes, and keeps none of them in memory.
+TEST(GivenBack, WhatADigestWasMadeOf) {
+  const std::string text = Letters();
+  SpooledBytes spooled;
+  spooled.append(text);
+  std::map<int, machine::StoredProgram> stored;
+  stored[10].object = spooled.Finish();
+  const machine::MachineFamily& family = *families::FindFamily("rml1");
+  const machine::Parameters parameters = *machine::MakeParameters(family, "", {});
+  const std::map<std::string, std::string> digests = DigestsOf({.family = family,
+                                                                .parameters = parameters,
+                                                                .programs = stored,
+                                                                .schedules = {},
+                                                                .main_program = 10});
+  EXPECT_EQ(digests.at("program"), BytesOfHex(Sha256Hex(text)).value_or("none"));
+  EXPECT_EQ(ResidentKb(stored[10].object->data()), 0);
+}
+
+// Where nobody has the bytes any more there is no memory of them at all.
+TEST(GivenBack, WhatNobodyHasAnyMore) {
+  const std::string text = Letters();
+  const std::string path = testing::TempDir() + "nobody_has." + std::to_string(::getpid());
+  std::ofstream(path, std::ios::binary) << text;
+  const char* begin = nullptr;
+  {
+    SpooledBytes spooled;
+    spooled.append(text);
+    const machine::Bytes bytes = spooled.Finish();
+    begin = bytes->data();
+    EXPECT_GE(ResidentKb(begin), 0);
+  }
+  EXPECT_EQ(ResidentKb(begin), -1);
+  {
+    auto opened = ProgramStream::Open(path, std::int64_t{1} << 22, nullptr);
+    ASSERT_TRUE(opened);
+    begin = opened->bytes->data();
+    EXPECT_GE(ResidentKb(begin), 0);
+  }
+  EXPECT_EQ(ResidentKb(begin), -1);
   std::filesystem::remove(path);
 }
 

@@ -233,5 +233,18 @@ TEST_F(ProgramStreamTest, AFullDiskEndsIt) {
   EXPECT_EQ(std::string(opened.stream->status().error().detail), "the temporary folder is full");
 }
 
+// Also where a single byte is left: it does not seem to be whole without it.
+TEST_F(ProgramStreamTest, AFullDiskEndsItBeforeItsLastByte) {
+  ProgramStream::Opened opened = Open(File(Numbered(ProgramStream::kBeginning + 1)));
+  ASSERT_NE(opened.stream, nullptr);
+  {
+    const SmallFiles small(ProgramStream::kBeginning);
+    opened.bytes.ReadAll();
+  }
+  EXPECT_EQ(opened.bytes->size(), ProgramStream::kBeginning);
+  ASSERT_FALSE(opened.stream->status());
+  EXPECT_EQ(opened.stream->status().error().code, ErrorCode::kCellFileUnwritable);
+}
+
 }  // namespace
 }  // namespace rmlcell::bridge

@@ -1,6 +1,8 @@
 #include "proto/bridge/spooled_bytes.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -102,6 +104,43 @@ TEST(SpooledBytes, AFullDiskLosesNothing) {
     }
     EXPECT_TRUE(*bytes == text) << size;
   }
+}
+
+// Of the files without a name of this process the one that has so many bytes; -1: there is none.
+int NamelessFileOf(off_t size) {
+  for (int file = 3; file < 1024; ++file) {
+    struct stat about {};
+    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_nlink == 0 &&
+        about.st_size == size)
+      return file;
+  }
+  return -1;
+}
+
+// A part that the file does not give any more is an error, and never other bytes, or fewer.
+TEST(SpooledBytes, APartThatCannotBeReadIsTold) {
+  SpooledBytes spooled;
+  spooled.append(std::string(2'500'000, 'x'));  // two megabytes of them lie in a file
+  const int file = NamelessFileOf(off_t{2} << 20);
+  ASSERT_GE(file, 0);
+  ASSERT_EQ(::ftruncate(file, 1000), 0);
+  EXPECT_EQ(*spooled.Part(0, 1000), std::string(1000, 'x'));
+  const auto beyond = spooled.Part(0, 1001);
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(std::string(beyond.error().detail), "a file of the temporary folder");
+  EXPECT_EQ(*spooled.Part(std::int64_t{2} << 20, 5), "xxxxx");  // those are in memory
+}
+
+// What came back into memory takes no room of the full disk.
+TEST(SpooledBytes, AFullDiskHasItsRoomBack) {
+  const SmallFiles small(rlim_t{2} << 20);
+  SpooledBytes spooled;
+  spooled.append(std::string(2'500'000, 'x'));
+  EXPECT_GE(NamelessFileOf(off_t{2} << 20), 0);
+  spooled.append(std::string(2'500'000, 'x'));
+  EXPECT_EQ(NamelessFileOf(off_t{2} << 20), -1);
+  EXPECT_EQ(spooled.size(), 5'000'000);
 }
 
 TEST(ReadProgram, SaysWhatItCannotRead) {

@@ -74,6 +74,15 @@ class HeardAgain : public testing::Test {
     while (machine_->time() < kEnd && machine_->Advance(kEnd) == machine::Progress::kMoreWork) {
     }
   }
+  // The last that acts on it, at its end.
+  void SwitchOff() {
+    const machine::SwitchPower off{.on = false};
+    const Status done = machine_->Apply(off);
+    ASSERT_TRUE(done) << done.error().detail;
+    v1::JournalEntry& entry = Next();
+    entry.set_virtual_time_ns(kEnd.count());
+    *entry.mutable_applied()->mutable_input() = bridge::AppliedOf(off);
+  }
   std::vector<std::string> Again() const {
     SeldomHeard again;
     const auto played = Replay(recorded_, {.to = kEnd, .observer = &again});
@@ -88,13 +97,13 @@ class HeardAgain : public testing::Test {
     return asked;
   }
 
-  // Up to where it is played when so many of these questions are answered with yes.
-  SimTime PlayedUntil(int answers) const {
+  // What is played when so many of these questions are answered with yes.
+  Replayed PlayedFor(int answers) const {
     int asked = 0;
     const auto played =
         Replay(recorded_, {.to = kEnd, .goes_on = [&](SimTime) { return ++asked <= answers; }});
     EXPECT_TRUE(played) << played.error().detail;
-    return played ? played->until : kEnd;
+    return played ? *played : Replayed();
   }
 
   static constexpr SimTime kEnd = std::chrono::hours(10);
@@ -154,8 +163,20 @@ TEST_F(HeardAgain, WhoLeavesDoesNotWaitForTheRestOfAStream) {
   Make("rml1", "srm-20", stream);
   Begin(machine::StartRun{.program = 1});
   ASSERT_GT(Asked(kEnd), 4);
-  EXPECT_EQ(PlayedUntil(Asked(kEnd)), kEnd);
-  EXPECT_LT(PlayedUntil(3), kEnd);
+  EXPECT_EQ(PlayedFor(Asked(kEnd)).until, kEnd);
+  EXPECT_LT(PlayedFor(3).until, kEnd);
+}
+
+// LIVE-3.40: nor does anything act that comes behind the place where he left.
+TEST_F(HeardAgain, WhatComesBehindTheLastQuestionDoesNotAct) {
+  std::string stream = ";;^IN;!MC0;";
+  for (int i = 0; i < 100'000; ++i) stream += "V15;";
+  Make("rml1", "srm-20", stream);
+  Begin(machine::StartRun{.program = 1});
+  SwitchOff();
+  ASSERT_GT(Asked(kEnd), 4);
+  EXPECT_EQ(PlayedFor(Asked(kEnd)).inputs, 2);
+  EXPECT_EQ(PlayedFor(3).inputs, 1);
 }
 
 }  // namespace

@@ -57,5 +57,17 @@ TEST(Records, AreReadUpToWhereTheyAreWhole) {
   EXPECT_THAT(ReadRecords(std::string(100, '\0')).records, IsEmpty());
 }
 
+// One that says to be longer than what is there is none, also where the checksum fits that.
+TEST(Records, AreNotLongerThanWhatIsThere) {
+  std::string bytes;
+  AddRecord("abc", bytes);
+  ASSERT_EQ(bytes[0], 3);
+  for (const char length : {'\x04', '\x0A', '\x20'}) {
+    bytes[0] = length;
+    EXPECT_THAT(ReadRecords(bytes).records, IsEmpty());
+    EXPECT_EQ(ReadRecords(bytes).end, 0);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::recording

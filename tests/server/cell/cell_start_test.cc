@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -11,15 +12,19 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "grpc/health/v1/health.grpc.pb.h"
+#include "rmlcell/v1/job.grpc.pb.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
+#include "rmlcell/v1/project.grpc.pb.h"
 #include "server/base/log.h"
 #include "server/cell/cell.h"
 #include "server/records/machine_options.h"
 #include "storage/opening/open_store.h"
+#include "tests/storage/store_conformance.h"
 
 namespace rmlcell::server {
 namespace {
@@ -83,7 +88,7 @@ class CellStartTest : public testing::Test {
     context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1));
   }
   // As whoever asks the server hears it.
-  static v1::MachineState StateOf(const Cell& cell, const std::string& machine) {
+  static v1::MachineStatus StatusOf(const Cell& cell, const std::string& machine) {
     grpc::ClientContext context;
     BePatient(context);
     v1::GetMachineRequest request;
@@ -92,7 +97,14 @@ class CellStartTest : public testing::Test {
     const grpc::Status status =
         v1::MachineService::NewStub(ChannelTo(cell))->GetMachine(&context, request, &told);
     EXPECT_TRUE(status.ok()) << status.error_message();
-    return told.status().state();
+    return told.status();
+  }
+  // In place of rmlcell-worker, whether it is to work or to be a host.
+  std::string Program(const std::string& what) const {
+    const std::string path = folder_ + "/program";
+    std::ofstream(path) << "#!/bin/sh\n" << what << "\n";
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
   }
 
   std::string folder_ = testing::TempDir() + "cell_XXXXXX";
@@ -223,7 +235,8 @@ TEST_F(CellStartTest, AMachineLivesWhereItsRecordOrTheConfigurationSaysSo) {
     const auto cell = Cell::Start(config);
     ASSERT_TRUE(cell) << cell.error().detail;
     for (const auto& [machine, lives] : {std::pair("mill-1", all), std::pair("mill-2", !all)}) {
-      EXPECT_EQ(StateOf(**cell, machine) == v1::MACHINE_STATE_STARTING, lives) << machine << all;
+      EXPECT_EQ(StatusOf(**cell, machine).state() == v1::MACHINE_STATE_STARTING, lives)
+          << machine << all;
     }
   }
 }
@@ -281,6 +294,117 @@ TEST_F(CellStartTest, SaysThatItServes) {
       grpc::health::v1::Health::NewStub(ChannelTo(**cell))->Check(&context, request, &response);
   ASSERT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(response.status(), grpc::health::v1::HealthCheckResponse::SERVING);
+}
+
+// And that it does so no more, before anything of it ends.
+TEST_F(CellStartTest, SaysThatItIsAboutToStop) {
+  const auto cell = Cell::Start(Alone("stopping"));
+  ASSERT_TRUE(cell) << cell.error().detail;
+  grpc::ClientContext context;
+  BePatient(context);
+  const auto stub = grpc::health::v1::Health::NewStub(ChannelTo(**cell));
+  const auto watch = stub->Watch(&context, grpc::health::v1::HealthCheckRequest());
+  grpc::health::v1::HealthCheckResponse told;
+  ASSERT_TRUE(watch->Read(&told));
+  EXPECT_EQ(told.status(), grpc::health::v1::HealthCheckResponse::SERVING);
+  std::jthread stopping([&cell] { (*cell)->Stop(); });
+  EXPECT_TRUE(watch->Read(&told));
+  EXPECT_EQ(told.status(), grpc::health::v1::HealthCheckResponse::NOT_SERVING);
+  context.TryCancel();
+  static_cast<void>(watch->Finish());
+}
+
+// workers.count and workers.paced: as many of each, and one for each core where nobody says how
+// many.
+TEST_F(CellStartTest, HasTheWorkersThatAreConfigured) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  struct Case {
+    int count, paced, computing, of_all;
+  };
+  for (const Case& one : {Case{1, 2, 1, 0}, Case{-1, 0, 0, cores}}) {
+    Config config = Alone("workers" + std::to_string(one.paced));
+    const std::string lives = config.state_directory + ".lives";
+    config.workers_program = Program("echo \"[$*]\" >> " + lives + "\nexec sleep 60");
+    config.workers_count = one.count;
+    config.workers_paced = one.paced;
+    const auto cell = Cell::Start(config);
+    ASSERT_TRUE(cell) << cell.error().detail;
+    int computing = 0;
+    int paced = 0;
+    int of_all = 0;
+    EXPECT_TRUE(storage::Eventually([&] {
+      computing = paced = of_all = 0;
+      std::ifstream file(lives);
+      for (std::string line; std::getline(file, line);) {
+        if (line.ends_with(" --pool computing]")) {
+          ++computing;
+        } else if (line.ends_with(" --pool paced]")) {
+          ++paced;
+        } else {
+          ++of_all;
+        }
+      }
+      return computing + paced + of_all == one.computing + one.paced + one.of_all;
+    }));
+    EXPECT_EQ(computing, one.computing) << one.count;
+    EXPECT_EQ(paced, one.paced) << one.count;
+    EXPECT_EQ(of_all, one.of_all) << one.count;
+  }
+}
+
+// A host that ends again and again is not begun for ever: whoever looks at its machine reads why.
+TEST_F(CellStartTest, AMachineWhoseHostAlwaysEndsIsOff) {
+  Config config = Alone("ends");
+  config.machines = {{"mill-1", "rml1", "srm-20", "A mill"}};
+  config.machines_hosts = "all";
+  config.workers_program = Program("exit 1");
+  const auto cell = Cell::Start(config);
+  ASSERT_TRUE(cell) << cell.error().detail;
+  v1::MachineStatus status;
+  EXPECT_TRUE(storage::Eventually([&] {
+    status = StatusOf(**cell, "mill-1");
+    return status.state() == v1::MACHINE_STATE_OFF;
+  }));
+  EXPECT_THAT(status.off_reason().message(),
+              HasSubstr("its host ended 5 times within a minute, the last time with code 1"));
+}
+
+// LIVE-5.02: whoever hands a RUN in is told why it waits.
+TEST_F(CellStartTest, ARunThatIsHandedInSaysWhyItWaits) {
+  const auto cell = Cell::Start(Alone("waits"));
+  ASSERT_TRUE(cell) << cell.error().detail;
+  grpc::ClientContext context;
+  BePatient(context);
+  v1::SubmitJobRequest request;
+  request.mutable_job()->set_kind(v1::JOB_KIND_RUN);
+  request.mutable_job()->set_machine("machines/mill-1");
+  request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+  request.mutable_job()->mutable_inline_program()->set_content("PA;PU100,0;");
+  v1::Job job;
+  const grpc::Status status =
+      v1::JobService::NewStub(ChannelTo(**cell))->SubmitJob(&context, request, &job);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  ASSERT_GT(job.start_blockers_size(), 0);
+  EXPECT_EQ(job.start_blockers(job.start_blockers_size() - 1).code(),
+            CodeText(ErrorCode::kCellNotLive));  // it has no host
+}
+
+// limits.message_bytes: a call that is longer than 4 MiB, as long as gRPC takes them by itself, is
+// heard. Notes are up to 64 KiB.
+TEST_F(CellStartTest, HearsMessagesAsLongAsItIsConfigured) {
+  Config config = Alone("long");
+  config.limit_message_bytes = 8 << 20;
+  const auto cell = Cell::Start(config);
+  ASSERT_TRUE(cell) << cell.error().detail;
+  grpc::ClientContext context;
+  BePatient(context);
+  v1::CreateProjectRequest request;
+  request.set_project_id("door");
+  request.mutable_project()->set_notes(std::string(5 << 20, 'n'));
+  v1::Project made;
+  const grpc::Status status =
+      v1::ProjectService::NewStub(ChannelTo(**cell))->CreateProject(&context, request, &made);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
 }
 
 TEST_F(CellStartTest, LeavesNothingBehind) {

@@ -69,5 +69,22 @@ TEST(LooksOfFeed, EventsOfAJobThatIsDeletedAreGone) {
   EXPECT_EQ(CodeOf(feed.JobEvents(job, seen, 100)), ErrorCode::kCellNotFound);
 }
 
+// What was forgotten is told as what was never told: it waits with all others, for 5 ms, and not
+// for its own last time.
+TEST(LooksOfFeed, APositionThatWasForgottenIsANewOne) {
+  FakeLog log;
+  TestSteadyClock steady;
+  EventFeed feed(log, {.clock = steady.clock(), .poll_interval = kWhenHinted});
+  const std::string job = storage::JobName(1);
+  const auto told = [&] { return Eventually([&] { return bool(feed.LatestAfter(job, 0)); }); };
+  feed.Publish(job, "of the first attempt");
+  ASSERT_TRUE(told());
+  feed.Forget(job);
+  feed.Publish(job, "of the second one");
+  ASSERT_TRUE(steady.GoneRound());  // the feed is done with the first one, and waits
+  steady.Advance(std::chrono::milliseconds(5));
+  EXPECT_TRUE(told());
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "proto/bridge/encoding.h"
+#include "proto/bridge/sha256.h"
 #include "server/host/journal.h"
 #include "server/host/recovered.h"
 #include "tests/server/host/host_machine_bed.h"
@@ -225,6 +227,20 @@ TEST(AnsweredEntries, KnowWhatWasAsked) {
   EXPECT_FALSE(answered.IsAnother(key, AnsweredRequests::DigestOf(order)));
   order.mutable_factor()->set_factor(3.0);
   EXPECT_TRUE(answered.IsAnother(key, AnsweredRequests::DigestOf(order)));
+}
+
+// LIVE-3.27: what an earlier version kept is compared all the same: the first 32 digits of the
+// SHA-256 of what was asked, whatever token it came with.
+TEST(AnsweredEntries, KeepWhatWasAskedInTheSameWay) {
+  v1::HostOrder order;
+  order.set_for_job("jobs/17");
+  order.set_reason("it chatters");
+  order.mutable_factor()->set_request_id("one");
+  order.mutable_factor()->set_factor(2.0);
+  const std::string about = std::to_string(order.request_case()) + "\njobs/17\nit chatters\n";
+  const std::string asked = bridge::StableBytes(order.factor());
+  order.mutable_factor()->set_control_token("a token");
+  EXPECT_EQ(AnsweredRequests::DigestOf(order), bridge::Sha256Hex(about + asked).substr(0, 32));
 }
 
 // LIVE-3.27: ten minutes from when it was given, however many hosts there were meanwhile.

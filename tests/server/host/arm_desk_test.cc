@@ -107,7 +107,15 @@ TEST_F(ArmTest, AMachineWithAnOpenRunIsNotArmed) {
   const v1::HostOrderAnswer answer = Do(Arm());
   EXPECT_EQ(answer.refusal().code(), "CELL-E9421");
   EXPECT_THAT(answer.refusal().message(), HasSubstr("a run is open"));
+  ASSERT_GT(answer.start_blockers_size(), 0);
+  EXPECT_EQ(answer.start_blockers(0).code(), "CELL-E9421");
   EXPECT_FALSE(IsArmed());
+  // Of what starts nothing it is not said what would be in the way of a start.
+  v1::HostOrder abort;
+  abort.mutable_abort()->set_run(99);
+  const v1::HostOrderAnswer of_another = Do(abort);
+  EXPECT_EQ(of_another.refusal().code(), "CELL-E9421");
+  EXPECT_EQ(of_another.start_blockers_size(), 0);
 }
 
 // What becomes of the run is never guessed.

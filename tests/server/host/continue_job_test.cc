@@ -331,6 +331,12 @@ TEST_F(ContinueJobTest, ARunOfNobodysJobGoesOnDirectly) {
   *order.mutable_start_at_step() =
       Continue(Preview(0).preview().preview_token()).continue_job().start();
   EXPECT_EQ(Do(order).refusal().code(), "CELL-E9409");
+  v1::HostOrder unseen = order;  // he has looked at the machine, and not at its tool
+  unseen.mutable_start_at_step()->set_request_id("unseen");
+  unseen.mutable_start_at_step()->clear_confirmations();
+  unseen.mutable_start_at_step()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  EXPECT_EQ(Do(unseen).refusal().code(), "CELL-E9421");
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
   order.mutable_start_at_step()->set_request_id("once more");
   order.mutable_start_at_step()->add_confirmations(v1::CONFIRMATION_INSPECTED);
   host_->TakeEntries(now_, true);

@@ -302,6 +302,7 @@ TEST(DeskLimits, OfAnAnswerInTheJournal) {
   };
   const auto entry = entry_with(3'000);
   ASSERT_TRUE(entry);
+  EXPECT_EQ(entry->kind(), static_cast<int>(v1::HostOrder::kFactor));
   const std::size_t most = 3'000 + 4'096 - entry->ByteSizeLong();
   EXPECT_EQ(entry_with(most)->ByteSizeLong(), 4'096U);
   EXPECT_FALSE(entry_with(most + 1));

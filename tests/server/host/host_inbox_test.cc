@@ -2,6 +2,7 @@
 #include "server/host/host_inbox.h"
 
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <chrono>
 #include <future>
@@ -105,6 +106,21 @@ TEST(Background, ProcessorTimeGoesOnWithWork) {
   while (ThreadTime_s() - begun < 0.01) {
   }
   EXPECT_LT(ThreadTime_s() - begun, 60.0);
+}
+
+// In seconds, as the system counts it.
+TEST(Background, ProcessorTimeIsThatOfTheSystem) {
+  const auto by_hand = [] {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec * 1'000'000'000 + time.tv_nsec) / 1e9;
+  };
+  for (int look = 0; look < 3; ++look) {
+    const double before = by_hand();
+    const double told = ThreadTime_s();
+    EXPECT_GE(told, before - 1e-9);
+    EXPECT_LE(told, by_hand() + 1e-9);
+  }
 }
 
 }  // namespace

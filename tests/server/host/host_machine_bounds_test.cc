@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "server/base/this_computer.h"
 #include "server/host/background.h"
 #include "server/host/host_name.h"
 #include "server/host/key_desk.h"
@@ -325,6 +326,11 @@ TEST(NamesOfHosts, DifferEachTime) {
   const std::string name = NameOfHost();
   EXPECT_NE(NameOfHost(), name);
   EXPECT_THAT(name, HasSubstr("/" + std::to_string(::getpid()) + "/"));
+  // Computer, process, boot and eight digits more, as "workshop/4711/5f3a09c1b06e77d2".
+  const std::string begin =
+      NameOfComputer() + "/" + std::to_string(::getpid()) + "/" + NameOfBoot();
+  EXPECT_EQ(name.substr(0, begin.size()), begin);
+  EXPECT_EQ(name.size(), begin.size() + 8);
 }
 
 // LIVE-6.01: what takes a while gives way to the machine.

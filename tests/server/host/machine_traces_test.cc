@@ -206,6 +206,21 @@ TEST_F(MachineTraces, ADryRunEndsInTheProgramThatIsMeant) {
   EXPECT_EQ(until(0), 12);
   EXPECT_EQ(until(1), 1);
   EXPECT_EQ(until(12), 12);
+  // LIVE-3.16: up to there the run is told to be dry, and no further.
+  v1::HostOrder halt;
+  halt.mutable_breakpoints()->set_control_token(token_);
+  v1::StepPlace& at = *halt.mutable_breakpoints()->add_breakpoints()->mutable_step();
+  at.set_program(12);
+  at.set_step(2);
+  ASSERT_FALSE(Do(halt).has_refusal());
+  ASSERT_FALSE(Do(Start("", 12)).has_refusal());
+  Pass(500ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_TRUE(host_->StatusAt(now_).run().dry());
+  ASSERT_FALSE(Do(Resume()).has_refusal());
+  Pass(500ms);  // in the DELAY that is real
+  EXPECT_TRUE(host_->StatusAt(now_).has_run());
+  EXPECT_FALSE(host_->StatusAt(now_).run().dry());
 }
 
 // LIVE-3.27: behind a crash an answer is known for ten minutes from when it was given.

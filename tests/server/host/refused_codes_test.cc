@@ -261,6 +261,24 @@ TEST_F(RefusedCodes, AJobAtAStepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(recorded.job(), "");
 }
 
+// LIVE-5.20: whoever finds the intent of a job finds behind it where the machine stands without
+// that.
+TEST_F(RefusedCodes, BehindAJobThatIsRefusedThereIsAMark) {
+  const auto expect_mark_behind = [this](const v1::HostOrder& job) {
+    static_cast<void>(host_->TakeEntries(now_, true));
+    ASSERT_TRUE(host_->TakeEntries(now_).empty());
+    ASSERT_TRUE(Do(job).has_refusal());
+    const std::vector<v1::JournalEntry> entries = host_->TakeEntries(now_);
+    ASSERT_EQ(entries.size(), 1U);
+    EXPECT_TRUE(entries[0].has_mark());
+  };
+  Make({}, true);
+  host_->Begin({}, now_);
+  expect_mark_behind(JobOf(kSquare, "square.rml"));
+  MakeAndTake();
+  expect_mark_behind(ContinueOf("jobs/16", "none"));
+}
+
 // LIVE-4.01, LIVE-4.02: what became of a run would be guessed; and nobody keeps what he has not.
 TEST_F(RefusedCodes, OfControlThatIsNone) {
   Make();

@@ -174,6 +174,7 @@ TEST_F(StartAtTest, WhatNobodyHasSeenToIsAskedFor) {
   const v1::HostOrderAnswer answer = Do(order);
   EXPECT_EQ(answer.refusal().code(), "CELL-E9421");
   EXPECT_THAT(answer.refusal().message(), HasSubstr("tool"));
+  EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);  // nothing was cut off here
 }
 
 // LIVE-6.01, LIVE-6.04.

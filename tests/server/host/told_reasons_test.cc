@@ -56,6 +56,16 @@ TEST_F(ToldReasons, ARunThatNobodyHeldSaysWhy) {
   EXPECT_THAT(ToldOfHold(v1::HOLD_REASON_STOP, false), testing::IsEmpty());
 }
 
+// LIVE-2.05: what is refused changes nothing, nor why the run is held.
+TEST_F(ToldReasons, AStartThatIsRefusedIsNoReason) {
+  static_cast<void>(ToldOfHold(v1::HOLD_REASON_LATE, false));
+  Pass(3s);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_TRUE(Do(Start()).has_refusal());
+  EXPECT_EQ(State(), v1::MACHINE_STATE_HELD);
+  EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_LATE);
+}
+
 // LIVE-5.02 (a): as long as the disk does not answer.
 TEST_F(ToldReasons, JobsWaitWhileTheDiskIsLate) {
   Make();

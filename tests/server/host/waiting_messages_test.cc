@@ -73,6 +73,37 @@ TEST(WaitingMessages, BeyondTheBoundNothingIsMadeLessOf) {
   EXPECT_EQ(taken.messages.size(), 258U);
 }
 
+// LIVE-3.10, LIVE-3.20: what does more than a STOP acts as what it is, as keys do; for a HOLD there
+// is a STOP of whoever asked for it.
+TEST(WaitingMessages, WhatHaltsBeyondTheBoundStillHalts) {
+  WaitingMessages waiting;
+  for (int i = 1; i <= 256; ++i) waiting.Add(Stop(i));
+  v1::HostResponse message;
+  message.mutable_order()->mutable_abort();
+  waiting.Add(message);
+  message.mutable_order()->mutable_disarm();
+  waiting.Add(message);
+  message.mutable_order()->mutable_panel_key()->set_key("PAUSE");
+  message.mutable_order()->mutable_panel_key()->set_action(v1::KEY_ACTION_TAP);
+  waiting.Add(message);
+  message.mutable_order()->mutable_key()->set_key("STOP");
+  message.mutable_order()->mutable_key()->set_action(v1::KEY_ACTION_TAP);
+  waiting.Add(message);
+  message.mutable_order()->mutable_hold();
+  message.mutable_order()->set_number(600);
+  message.mutable_order()->set_caller("anna");
+  waiting.Add(message);
+  const WaitingMessages::Taken taken = waiting.Take();
+  ASSERT_EQ(taken.stops.size(), 5U);
+  EXPECT_TRUE(taken.stops[0].has_abort());
+  EXPECT_TRUE(taken.stops[1].has_disarm());
+  EXPECT_EQ(taken.stops[2].panel_key().key(), "PAUSE");
+  EXPECT_EQ(taken.stops[3].key().key(), "STOP");
+  EXPECT_TRUE(taken.stops[4].has_stop());
+  EXPECT_EQ(taken.stops[4].number(), 600);
+  EXPECT_EQ(taken.stops[4].caller(), "anna");
+}
+
 // What is no order has no bound of its own: it answers what this host has sent.
 TEST(WaitingMessages, OthersAreNotCounted) {
   WaitingMessages waiting;

@@ -53,6 +53,22 @@ TEST_F(WrittenValues, AreAllOfThemOrNone) {
   EXPECT_EQ(Real("VR[4]"), -7.25);
 }
 
+// What is read is told value by value: what there is, and of the rest that there is no such thing.
+TEST_F(WrittenValues, WhatThereIsNotIsToldAsThat) {
+  MakeAndTakeOptimo();
+  ASSERT_FALSE(WriteReals({{"VR[3]", 2.5}}).has_refusal());
+  v1::HostOrder order;
+  for (const char* name : {"NONE", "VR[3]"}) order.mutable_read_variables()->add_variables(name);
+  const v1::ReadVariablesResponse read = Do(order).variables();
+  ASSERT_EQ(read.variables_size(), 2);
+  EXPECT_EQ(read.variables(0).name(), "NONE");
+  EXPECT_FALSE(read.variables(0).has_value());
+  EXPECT_EQ(read.variables(0).error().code(), CodeText(ErrorCode::kCellInvalidArgument));
+  EXPECT_EQ(read.variables(0).error().message(), "the machine has no such variable");
+  EXPECT_FALSE(read.variables(1).has_error());
+  EXPECT_EQ(read.variables(1).value().real(), 2.5);
+}
+
 // LIVE-7.09: what recorded points are, and what was in force, is told with each entry, by its name.
 TEST_F(WrittenValues, OfWhatIsTaughtHaveTheirNames) {
   MakeAndTakeOptimo();

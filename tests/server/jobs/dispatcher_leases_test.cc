@@ -31,5 +31,23 @@ TEST(DispatcherLease, ThatWasRenewedIsHeldForItsWholeTime) {
   EXPECT_EQ(bed.Job(job).attempts, 1);
 }
 
+// What has ended otherwise meanwhile is not given back: its worker just hears that it was lost.
+TEST(DispatcherLease, ThatIsLostLeavesItsJobAlone) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  const storage::AttemptRecord attempt = Must(bed.server.store().ListAttempts(job)).back();
+  Must(bed.server.store().Finish(
+      {.job = job, .attempt = attempt.number, .fence = attempt.fence, .worker = attempt.worker},
+      {.outcome = {.state = storage::JobState::kFailed}}));
+  bed.hooks.losses_that_fail = 1;  // the first that would be given back or abandoned
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), false);
+  bed.Settle();
+  EXPECT_EQ(bed.hooks.losses_that_fail, 1);
+  EXPECT_EQ(bed.Job(job).state, storage::JobState::kFailed);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -148,6 +148,8 @@ TEST(DispatcherControl, AnOrderThatFoundNobodyIsNotForTheNextAttempt) {
   bed.hooks.Answer();  // there is no other job: it waits for one
   EXPECT_EQ(looks.Released(), true);
   bed.LookAgain();
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
+            ErrorCode::kCellPrecondition);  // it waits for a job, and does not look any more
   bed.hooks.losses_that_fail = 0;
   ASSERT_TRUE(looks.Take());
   EXPECT_EQ(looks.job(), job);

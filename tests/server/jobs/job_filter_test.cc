@@ -90,6 +90,7 @@ TEST(JobFilter, RefusesWhatItDoesNotUnderstandAndLeavesTheQueryAsItWas) {
                                    "user = a",
                                    "family = lathe",
                                    "verdict = WORSE",
+                                   "verdict = \"\"",
                                    "text = \"\"",
                                    "since = yesterday",
                                    "until = 2025-11-25",

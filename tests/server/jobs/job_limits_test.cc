@@ -217,6 +217,15 @@ TEST_F(JobLimits, OfWhatComesLater) {
   };
   EXPECT_EQ(run([](v1::RunOptions&) {}), std::nullopt);
   EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("t"); }), kInvalid);
+  // LIVE-5.01: it is attempted once, whether that is said or not.
+  for (const int attempts : {1, 2}) {
+    EXPECT_EQ(Asked([attempts](v1::Job& job) {
+                job.clear_simulation();
+                job.set_kind(v1::JOB_KIND_RUN);
+                job.set_attempts_max(attempts);
+              }),
+              attempts == 1 ? std::nullopt : std::optional(kInvalid));
+  }
   EXPECT_EQ(run([](v1::RunOptions& how) { how.set_ticket("jobs/99"); }), ErrorCode::kCellNotFound);
   // LIVE-6.03: where it begins at a step, and only there, somebody has seen to something.
   const auto at = [&](int program, int step, const std::function<void(v1::RunOptions&)>& change) {
@@ -233,11 +242,13 @@ TEST_F(JobLimits, OfWhatComesLater) {
   const auto seen = [](v1::RunOptions& how) { how.add_confirmations(v1::CONFIRMATION_TOOL); };
   EXPECT_EQ(at(1, 1, seen), std::nullopt);
   EXPECT_EQ(run(seen), kInvalid);
-  EXPECT_EQ(at(1, 1,
-               [](v1::RunOptions& how) {
-                 for (int i = 0; i < 17; ++i) how.add_confirmations(v1::CONFIRMATION_TOOL);
-               }),
-            kInvalid);
+  const auto seen_so_often = [&](int count) {
+    return at(1, 1, [count](v1::RunOptions& how) {
+      for (int i = 0; i < count; ++i) how.add_confirmations(v1::CONFIRMATION_TOOL);
+    });
+  };
+  EXPECT_EQ(seen_so_often(16), std::nullopt);
+  EXPECT_EQ(seen_so_often(17), kInvalid);
   EXPECT_EQ(at(1, 1, [](v1::RunOptions& how) { how.set_unzeroed(true); }), kInvalid);
   // LIVE-6.01, LIVE-6.04: in which pass, and without the beam up to the next WORK.
   const auto pass = [](v1::RunOptions& how) { how.set_occurrence(3); };

@@ -106,6 +106,10 @@ TEST(ToldJobs, OnlySoMuchIsKept) {
   job.set_title(std::string(ToldJobs::kBytesMax + 1, 't'));
   told.Keep(3, 5, job);
   EXPECT_EQ(told.Find(3, 5), nullptr);
+  while (job.ByteSizeLong() > ToldJobs::kBytesMax) job.mutable_title()->pop_back();
+  ASSERT_EQ(job.ByteSizeLong(), ToldJobs::kBytesMax);
+  told.Keep(3, 5, job);
+  EXPECT_NE(told.Find(3, 5), nullptr);
 }
 
 }  // namespace

@@ -180,6 +180,35 @@ TEST_F(HostEntriesTest, AJobThatHasEndedHearsNothingMore) {
   EXPECT_EQ(ToldOfMachine(), 3);
 }
 
+// What the machine tells behind the end of a run, and what comes late of a job that is over, is not
+// of the job that ended; where the machine stands is kept once.
+TEST_F(HostEntriesTest, WhatFollowsTheEndOfARunIsNotOfItsJob) {
+  const std::int64_t over = SubmitRun();
+  Acquire();
+  Over(over, v1::Outcome::KIND_COMPLETED);
+  Mark(true);
+  ASSERT_TRUE(StoreEntries(bed.store(), lease, entries).how);
+  entries.clear();
+  const std::size_t told_of_over = EventsOf(over).size();
+  const std::int64_t job = SubmitRun();
+  Acquire();
+  const std::size_t told = EventsOf(job).size();
+  Over(job, v1::Outcome::KIND_COMPLETED);
+  Add().mutable_event()->mutable_message()->set_text("the door was opened");
+  Add(over).mutable_event()->mutable_message()->set_text("late");
+  Mark(true);
+  const StoredEntries stored = StoreEntries(bed.store(), lease, entries);
+  ASSERT_TRUE(stored.how) << stored.how.error().detail;
+  EXPECT_EQ(EventsOf(job).size(), told + 1);
+  EXPECT_TRUE(EventsOf(job).back().has_ended());
+  EXPECT_EQ(EventsOf(over).size(), told_of_over);
+  EXPECT_EQ(ToldOfMachine(), 4);
+  const auto mark = Must(bed.store().GetMachineMark("mill-1"));
+  v1::MachineMark note;
+  ASSERT_TRUE(note.ParseFromString(mark->note));
+  EXPECT_EQ(note.state(), "");
+}
+
 // Entries that are stored are not stored again with those that were not: what came before the job
 // is a write of its own.
 TEST_F(HostEntriesTest, WhatWasNotStoredIsToldApart) {

@@ -99,6 +99,28 @@ TEST_F(HostProcessesTest, OneThatDiesAndDiesIsGivenUp) {
   EXPECT_TRUE(processes.IsEnabled("mill-1"));
 }
 
+// LIVE-3.01: whoever enables it again has it begin at once and die as often as at first, though it
+// was not given up yet.
+TEST_F(HostProcessesTest, OneThatIsEnabledAgainBeginsAnew) {
+  HostProcesses processes(Options("exec sleep 60"));
+  const auto killed = [&](std::size_t life) {
+    return Eventually([&] { return Lives("mill-1") >= life; }) &&
+           ::kill(Processes("mill-1")[life - 1], SIGKILL) == 0 && LivesAndDies("mill-1");
+  };
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  RestartDelay delay;
+  for (std::size_t life = 1; life <= 4; ++life) {
+    ASSERT_TRUE(killed(life)) << life;
+    if (life < 4) steady_.Advance(delay.AfterLife({}));
+  }
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  ASSERT_TRUE(killed(5));
+  steady_.Advance(RestartDelay().AfterLife({}));
+  ASSERT_TRUE(killed(6));
+  EXPECT_THAT(GivenUp(), IsEmpty());
+  EXPECT_TRUE(processes.IsEnabled("mill-1"));
+}
+
 // LIVE-3.01: an end in order counts for nothing, and neither do deaths that lie apart.
 TEST_F(HostProcessesTest, EndsThatAreNoTroubleAreNotCounted) {
   HostProcesses processes(Options("exit 0"));

@@ -128,6 +128,53 @@ TEST_F(HostsAsProcesses, OneThatMayComeBackIsWaitedFor) {
   ::kill(Lives()[0], SIGKILL);
 }
 
+// What is there and cannot be begun is tried once a second.
+TEST_F(HostsAsProcesses, OneThatCannotBeBegunIsTriedEachSecond) {
+  const HostProcesses::Options options = Options("exec sleep 60");
+  std::ofstream(options.program) << "#!/no/such/interpreter\n";
+  HostProcesses processes(options);
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  ASSERT_TRUE(steady_.GoneRound());
+  Options("exec sleep 60");  // by now it could be
+  steady_.Advance(milliseconds(999));
+  ASSERT_TRUE(steady_.GoneRound());
+  EXPECT_TRUE(Lives().empty());
+  steady_.Advance(milliseconds(1));
+  ASSERT_TRUE(LivesAre(1));
+  ::kill(Lives()[0], SIGKILL);
+}
+
+// Of many four begin at once: the others follow, round by round.
+TEST_F(HostsAsProcesses, FourBeginInOneRound) {
+  heard_ = true;
+  std::atomic<bool> all_are_wanted = false;
+  std::mutex counting;
+  std::vector<std::size_t> begun;  // behind each round from which on nobody is heard
+  HostProcesses::Options options = Options("exec sleep 60");
+  options.look = [&] {
+    if (!all_are_wanted || heard_.exchange(false)) return;
+    std::size_t logs = 0;
+    for (int mill = 1; mill <= 6; ++mill)
+      logs += std::filesystem::exists(Kept("mill-" + std::to_string(mill) + ".log")) ? 1 : 0;
+    const std::lock_guard lock(counting);
+    begun.push_back(logs);
+  };
+  const auto rounds = [&] {
+    const std::lock_guard lock(counting);
+    return begun;
+  };
+  HostProcesses processes(options);
+  for (int mill = 1; mill <= 6; ++mill)
+    ASSERT_TRUE(processes.Enable("mill-" + std::to_string(mill)));
+  all_are_wanted = true;
+  ASSERT_TRUE(Eventually([&] { return rounds().size() >= 3; }));
+  EXPECT_EQ(rounds()[0], 4U);
+  EXPECT_EQ(rounds()[1], 6U);
+  EXPECT_EQ(rounds()[2], 6U);
+  ASSERT_TRUE(LivesAre(6));
+  for (const pid_t life : Lives()) ::kill(life, SIGKILL);
+}
+
 // It was told to end, and is wanted again before it has: the next one begins as soon as it has.
 TEST_F(HostsAsProcesses, TheNextOneFollowsAtOnce) {
   HostProcesses processes(Options("exec sleep 60"));

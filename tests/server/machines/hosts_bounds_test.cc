@@ -218,6 +218,19 @@ TEST_F(HostsBounds, OnlyWhatIsInItsMemoryIsSent) {
   EXPECT_EQ(Count(*link, v1::HostResponse::kMemory), 1);  // with its welcome
 }
 
+// What was stored while nobody had the machine comes with the welcome, and not again with the next
+// event.
+TEST_F(HostsBounds, WhatWasStoredBeforeItJoinedIsSentOnce) {
+  Must(bed.store().PutPrograms("mill-1", {{.slot = 5, .object = "PA;"}}, {}, "anna"));
+  Settle();
+  const auto link = Joined();
+  EXPECT_EQ(link->Newest(v1::HostResponse::kMemory)->memory().programs_size(), 1);
+  hosts.Receive(*link, Entries(Fence(*link), 1, true));
+  link->Newest(v1::HostResponse::kEntriesStored);
+  Settle();
+  EXPECT_EQ(Count(*link, v1::HostResponse::kMemory), 1);
+}
+
 // LIVE-3.02: a line that has another one behind it says nothing any more.
 TEST_F(HostsBounds, ALineThatWasFollowedSaysNothing) {
   const auto first = Joined();

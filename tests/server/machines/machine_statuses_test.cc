@@ -5,6 +5,7 @@
 #include <atomic>
 #include <optional>
 
+#include "server/records/job_messages.h"
 #include "tests/server/forwarding_store.h"
 #include "tests/server/machines/hosts_bed.h"
 
@@ -57,6 +58,27 @@ TEST_F(StatusesOfMachines, NothingIsToldOfAMachineThatWasRemoved) {
   Must(bed.store().DeleteMachine("optimo-1", storage::kAnyRevision));
   EXPECT_TRUE(Becomes("optimo-1", std::nullopt));
   EXPECT_EQ(StateOf("mill-1"), v1::MACHINE_STATE_IDLE);
+}
+
+// A job that begins, and one that is over, is seen at its machine.
+TEST_F(StatusesOfMachines, AJobIsSeenAtItsMachine) {
+  const MachineStatuses statuses(bed.store(), feed, *executor);
+  ASSERT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_IDLE));
+  bed.SubmitCheck();
+  ASSERT_TRUE(Eventually([&] { return feed.position() == Must(bed.store().LastPosition()); }));
+  Settle();
+  const auto leased =
+      Must(bed.store().AcquireJobs({.worker = "w",
+                                    .kinds = {"CHECK"},
+                                    .duration = std::chrono::hours(1),
+                                    .events = {StateEvent(storage::JobState::kRunning)}}));
+  ASSERT_EQ(leased.size(), 1U);
+  EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_RUNNING));
+  v1::Outcome outcome;
+  outcome.set_kind(v1::Outcome::KIND_COMPLETED);
+  Must(bed.store().Finish(leased.front().lease,
+                          {.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}}));
+  EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_IDLE));
 }
 
 // Whatever comes next brings a whole look, be it a step of a job, which changes no machine.

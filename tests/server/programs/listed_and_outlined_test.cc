@@ -38,6 +38,15 @@ TEST(ListedAndOutlined, AListingIsOfAnySizeAndWithoutAdvice) {
   EXPECT_EQ(std::ranges::count(long_one.content(), '='), 30'000);
 }
 
+// Of a text with errors there is no object to list: what is wrong with it is told.
+TEST(ListedAndOutlined, ATextWithErrorsHasNoListing) {
+  const v1::MakeListingResponse listed = ListingOf("SPEED 101\n");
+  EXPECT_FALSE(listed.findings().ok());
+  ASSERT_EQ(listed.findings().diagnostics_size(), 1);
+  EXPECT_EQ(listed.findings().diagnostics(0).code(), CodeText(ErrorCode::kLiteralRange));
+  EXPECT_EQ(listed.content(), "");
+}
+
 class OutlinedTexts : public testing::Test {
  protected:
   ServerBed bed;

@@ -204,10 +204,14 @@ TEST_F(MemoryToolsTest, FixesATextWithoutStoringIt) {
   ASSERT_EQ(fixed.fixed_size(), 1);
   EXPECT_EQ(fixed.fixed(0).place().line(), 1);
   EXPECT_FALSE(fixed.findings().ok());
+  for (const v1::Diagnostic& left : fixed.findings().diagnostics())
+    EXPECT_NE(left.code(), fixed.fixed(0).code());
   request.set_machine("machines/none");
   EXPECT_EQ(CodeOf(tools.Fix(request)), ErrorCode::kCellUnknownMachine);
   request.clear_machine();
   request.mutable_program()->set_content(ObjectOf("SPEED 20\n"));
+  EXPECT_EQ(CodeOf(tools.Fix(request)), ErrorCode::kCellBadText);
+  request.mutable_program()->set_content(std::string("SPEED 20 ; ") + '\0' + "\n");
   EXPECT_EQ(CodeOf(tools.Fix(request)), ErrorCode::kCellBadText);
   request.mutable_program()->set_file_name("a.rml");
   request.mutable_program()->set_content("IN;");

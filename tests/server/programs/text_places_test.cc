@@ -90,5 +90,29 @@ TEST(OverfullMemory, MayStayAsFull) {
   EXPECT_FALSE(room(3, 1));
 }
 
+// OPT-B.73: so with executables, which share the memory with their objects.
+TEST(OverfullMemory, IsAsFullByItsExecutables) {
+  ServerBed bed;
+  storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 1, .object = std::string(1400, 'o')}}, {}));
+  const auto put =
+      Must(bed.store().PutPrograms("optimo-1", {{.slot = 2, .object = std::string(600, 'o')}}, {}));
+  ASSERT_TRUE(Must(bed.store().PutExecutable("optimo-1", 2, put.front().revision,
+                                             std::string(300, 'e'), "anna")));
+  machine.parameters = {{"CMOS_SIZE", "1000"}};
+  const auto room_of_object = [&](std::size_t bytes) {
+    const std::vector<storage::ProgramWrite> writes{{.slot = 1, .object = std::string(bytes, 'w')}};
+    return CheckRoomFor(bed.store(), machine, writes).ok();
+  };
+  const auto room_of_executable = [&](int slot, std::int64_t bytes) {
+    return CheckRoomForExecutable(bed.store(), machine, slot, bytes).ok();
+  };
+  EXPECT_TRUE(room_of_object(1400));
+  EXPECT_FALSE(room_of_object(1401));
+  EXPECT_TRUE(room_of_executable(2, 300));
+  EXPECT_FALSE(room_of_executable(2, 301));
+  EXPECT_FALSE(room_of_executable(1, 1));
+}
+
 }  // namespace
 }  // namespace rmlcell::server

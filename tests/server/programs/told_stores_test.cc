@@ -82,11 +82,15 @@ TEST_F(ToldStores, AnExecutableIsToldWithItsBytes) {
 
 // OPT-10.17, OPT-E.7413: it names the file without the folder that it came from.
 TEST_F(ToldStores, AFindingOfASlotNamesTheFile) {
-  const auto reserved =
-      programs.Store({.name = Name(5), .file_name = "parts/door.S", .bytes = "STOP\n"});
-  ASSERT_TRUE(reserved);
-  ASSERT_EQ(reserved.value->findings().diagnostics_size(), 1);
-  EXPECT_EQ(reserved.value->findings().diagnostics(0).place().file(), "door.S");
+  for (const bool validate_only : {true, false}) {
+    const auto reserved = programs.Store({.name = Name(5),
+                                          .file_name = "parts/door.S",
+                                          .bytes = "STOP\n",
+                                          .validate_only = validate_only});
+    ASSERT_TRUE(reserved);
+    ASSERT_EQ(reserved.value->findings().diagnostics_size(), 1) << validate_only;
+    EXPECT_EQ(reserved.value->findings().diagnostics(0).place().file(), "door.S");
+  }
 }
 
 // OPT-E.7301: what the text itself does is in its file, and what another program does is not.

@@ -214,6 +214,11 @@ TEST_F(ToolLimits, AFixMayTellOfErrorsAlone) {
   EXPECT_EQ(told(true), 0);
 }
 
+// Nor is a link a check, which would tell of what is never reached.
+TEST_F(ToolLimits, ALinkGivesNoAdvice) {
+  EXPECT_EQ(Linked(LinkOf(1, {{1, "GOTO 10\nDELAY 1.\n10 STOP\n"}})), "");
+}
+
 // A thousand findings are listed, and the others counted.
 TEST_F(ToolLimits, FindingsThatAreNotListedAreCounted) {
   std::string many;

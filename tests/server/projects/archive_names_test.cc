@@ -66,6 +66,27 @@ TEST(ArchiveNames, AreThoseOfFiles) {
   EXPECT_FALSE(is_file("a:b"));
 }
 
+// Whoever unpacks them can read them; when that was packed does not show, so that the same project
+// is the same bytes.
+TEST(ArchiveNames, AreOfFilesThatAllCanRead) {
+  v1::Project project;
+  project.add_programs()->set_slot(7);
+  project.mutable_programs(0)->mutable_source()->set_file_name("part.S");
+  project.mutable_programs(0)->mutable_source()->set_content("STOP\n");
+  const auto written = WriteProjectArchive(project);
+  ASSERT_TRUE(written);
+  const std::unique_ptr<archive, int (*)(archive*)> read(archive_read_new(), archive_read_free);
+  archive_read_support_format_zip(read.get());
+  archive_read_open_memory(read.get(), written->data(), written->size());
+  archive_entry* entry = nullptr;
+  int files = 0;
+  for (; archive_read_next_header(read.get(), &entry) == ARCHIVE_OK; ++files) {
+    EXPECT_EQ(archive_entry_perm(entry), 0644U) << archive_entry_pathname(entry);
+    EXPECT_EQ(archive_entry_mtime(entry), 946'684'800) << "2000-01-01";
+  }
+  EXPECT_EQ(files, 2);
+}
+
 // The one that lies least deep; of two the first by name.
 TEST(ArchiveNames, TheFirstProjectIsRead) {
   const std::string a = R"({"title": "a"})";

@@ -101,6 +101,7 @@ TEST_F(ProjectFailures, OfSchedulesAndOfTheWayBack) {
     return Code(transfer.FromMachine(back, "Thu Mar 04 08:52:34 1993", "anna"));
   };
   Expect("taking it back", 7, taken);
+  EXPECT_EQ(CodeOf(bed.store().GetProject("back")), ErrorCode::kCellNotFound);  // it was asked only
   back.set_machine("optimo-1");
   EXPECT_EQ(taken(), ErrorCode::kCellInvalidArgument);
 }

@@ -120,7 +120,10 @@ TEST_F(ToldTransfers, AnItemIsTheSameWhereAllOfItIs) {
   EXPECT_TRUE(preview.value->findings().ok());
   const v1::Program& after = preview.value->items(0).program_after();
   EXPECT_EQ(after.name(), "machines/optimo-1/programs/11");
+  EXPECT_EQ(after.title(), "door");
+  EXPECT_EQ(after.file_name(), "door.S");
   EXPECT_EQ(after.source_bytes(), 13);
+  EXPECT_EQ(after.object_bytes(), static_cast<std::int64_t>(ObjectOf(kSource).size()));
   EXPECT_EQ(preview.value->items(4).laser_schedule_before().etag(), "1");
   EXPECT_EQ(preview.value->items(4).laser_schedule_after().etag(), "");  // it is not stored yet
 }

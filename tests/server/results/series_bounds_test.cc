@@ -30,6 +30,9 @@ class SeriesBounds : public testing::Test {
     for (const float low : {1.0F, 2.0F, -5.0F}) speed.add_low(low);
     for (const float high : {10.0F, 4.0F, 7.0F}) speed.add_high(high);
     for (const float last : {3.0F, 3.5F, 6.0F}) speed.add_last(last);
+    return EndedWith(table);
+  }
+  std::string EndedWith(const v1::SeriesTable& table) {
     v1::RunReport report;
     v1::Diagnostic& finding = *report.add_diagnostics();
     finding.set_code("OPT-E7304");
@@ -70,6 +73,33 @@ TEST_F(SeriesBounds, APartThatEndsWhereTheSpanBeginsIsNoneOfIt) {
   EXPECT_THAT(Parts(job, 20, 40, 2), ElementsAre(Pair(1.0, 10.0), Pair(2.0, 4.0)));
   EXPECT_THAT(Parts(job, 40, 60, 1), ElementsAre(Pair(3.5, 3.5)));
   EXPECT_THAT(Parts(job, 40, 70, 1), ElementsAre(Pair(-5.0, 7.0)));
+}
+
+// SeriesTable.last: a value stands until the next part begins, and not within that.
+TEST_F(SeriesBounds, APartThatBeginsWithTheSpanHasItsOwnValuesAlone) {
+  v1::SeriesTable table;
+  table.set_part_ns(10);
+  table.set_end_ns(30);
+  v1::SeriesTable::Column& speed = *table.add_columns();
+  speed.set_signal("speed");
+  for (const int part : {0, 1, 2}) table.add_parts(part);
+  for (const float low : {1.0F, 4.0F, 2.0F}) speed.add_low(low);
+  for (const float high : {9.0F, 5.0F, 3.0F}) speed.add_high(high);
+  for (const float last : {9.0F, 4.0F, 2.0F}) speed.add_last(last);
+  const std::string job = EndedWith(table);
+  EXPECT_THAT(Parts(job, 0, 30, 3), ElementsAre(Pair(1.0, 9.0), Pair(4.0, 5.0), Pair(2.0, 3.0)));
+  EXPECT_THAT(Parts(job, 10, 20, 1), ElementsAre(Pair(4.0, 5.0)));
+  EXPECT_THAT(Parts(job, 15, 20, 1), ElementsAre(Pair(4.0, 5.0)));
+}
+
+// Of what was never kept there is nothing to tell.
+TEST_F(SeriesBounds, ASeriesWithoutPartsStandsAtNothing) {
+  v1::SeriesTable table;
+  table.set_part_ns(10);
+  table.set_end_ns(30);
+  table.add_columns()->set_signal("speed");
+  const std::string job = EndedWith(table);
+  EXPECT_THAT(Parts(job, 0, 30, 2), ElementsAre(Pair(0.0, 0.0), Pair(0.0, 0.0)));
 }
 
 // Before the first part nothing stood: the first value is what is known.

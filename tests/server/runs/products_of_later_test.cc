@@ -192,6 +192,32 @@ TEST_F(ProductsOfLater, RunsThatCannotBeListedAreLookedAtAgain) {
   EXPECT_TRUE(HasReport(job));
 }
 
+// Nor is what could not be written to its end: the part of it that is there would be played.
+TEST_F(ProductsOfLater, ARecordingThatIsNotWholeIsNotPlayed) {
+  const std::int64_t job = Over();
+  Record(job);
+  products();
+  const std::string folder = runs_ + "/" + std::to_string(job);
+  std::filesystem::create_directories(folder);
+  std::filesystem::create_symlink("/dev/full", folder + "/" + std::string(kRecording));
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("said")));
+  LookAtMill();
+  EXPECT_TRUE(HasReport(job));
+}
+
+// Where the store could not say it nobody has to ask again: it is looked at a while later.
+TEST_F(ProductsOfLater, WhatCouldNotBeMadeIsMadeLater) {
+  const std::int64_t job = Over();
+  Record(job);
+  store_.lists_fail = true;
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  store_.lists_fail = false;
+  EXPECT_TRUE(Eventually([&] { return HasReport(job); }));
+}
+
 // What its host sends and is no recording is not kept, and not asked for again.
 TEST_F(ProductsOfLater, WhatIsNoRecordingIsNotKept) {
   const auto link = Joined();

@@ -2,17 +2,20 @@
 #include "server/runs/run_products.h"
 
 #include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "server/base/config.h"
 #include "server/base/executor.h"
+#include "server/base/log.h"
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
@@ -168,6 +171,40 @@ TEST_F(RunProductsTest, OneThatTakesTooLongIsGivenUp) {
     ASSERT_TRUE(Eventually([&] { return IsOver(job); }));
   }
   EXPECT_FALSE(HasReport(job));
+}
+
+// What became of each is in the log, by its own code: whoever misses a report reads there why.
+TEST_F(RunProductsTest, TheLogSaysWhyThereIsNone) {
+  const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+  const std::string log = folder_.File("log");
+  EXPECT_TRUE(StartLog("products-that-fail", "warn", "text", log));
+  const auto told = [&log] {
+    std::ifstream file(log);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const auto tells = [&told](std::int64_t job, ErrorCode code) {
+    return Eventually([&] {
+      const std::string text = told();
+      const std::size_t line = text.find("no report of " + JobName(job) + ": ");
+      return line != std::string::npos && text.find(CodeText(code), line) != std::string::npos;
+    });
+  };
+  {
+    SetScript("exec sleep 600");
+    const std::int64_t slow = Run("slow");
+    const auto products = Start(std::chrono::seconds(1));
+    products->Look("mill-1");
+    EXPECT_TRUE(tells(slow, ErrorCode::kCellProcessorBudget)) << told();
+  }
+  {
+    SetScript("");
+    const std::int64_t bad = Run("bad");
+    const auto products = Start();
+    products->Look("mill-1");
+    EXPECT_TRUE(tells(bad, ErrorCode::kCellReplayDiffers)) << told();
+  }
+  spdlog::drop("products-that-fail");
+  spdlog::set_default_logger(before);
 }
 
 // A host has the recordings of its newest runs alone.

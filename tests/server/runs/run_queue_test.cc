@@ -410,6 +410,15 @@ TEST_F(CancelledRun, IsAbortedOnce) {
   EXPECT_EQ(Orders().size(), 2U);
 }
 
+// Nor when its host has answered: what it was told it does.
+TEST_F(CancelledRun, IsNotAbortedAgainBehindItsAnswer) {
+  Accept(Orders().back());
+  Settle();
+  runs.WakeAll();
+  Settle();
+  EXPECT_EQ(Orders().size(), 2U);
+}
+
 // LIVE-2.10: an order that was on its way when the line broke may never have come there: the run of
 // a cancelled job ends when its host is back.
 TEST_F(CancelledRun, IsAbortedAgainWhereThatWasLostWithItsLine) {

@@ -89,6 +89,10 @@ TEST_F(KeptMessages, EventsAreSerialisedOnce) {
   ToldEvents large(records);
   const auto alone = large.Of(Deleted(1, 3 * kHalf));
   EXPECT_EQ(large.Of(Deleted(1, 1)).bytes, alone.bytes);
+  // Of two that are too large the newest.
+  const auto newest = large.Of(Deleted(2, 3 * kHalf));
+  EXPECT_EQ(large.Of(Deleted(2, 1)).bytes, newest.bytes);
+  EXPECT_NE(large.Of(Deleted(1, 1)).bytes, alone.bytes);
 }
 
 // For one watch alone so many bytes of messages, the newest ones; for two that share them more.
@@ -112,6 +116,21 @@ TEST_F(KeptMessages, MessagesAreMadeOnceForThoseThatShareThem) {
   const grpc::Slice kept = made(shared, before);
   made(shared, before + 2);
   EXPECT_EQ(made(other, before).begin(), kept.begin());
+}
+
+// Of two that are too large for one watch the newest is kept.
+TEST_F(KeptMessages, OfTwoLargeOnesTheNewestIsKept) {
+  const std::string text(SharedLog::kBytesOfOne, 'x');
+  const std::int64_t before = Last();
+  Say({text, text});
+  const auto log = LogOfJobs();
+  const auto made = [&](std::int64_t position) {
+    return *Must(log->After(position, false))->message;
+  };
+  const grpc::Slice first = made(before);
+  const grpc::Slice second = made(before + 1);
+  EXPECT_EQ(made(before + 1).begin(), second.begin());
+  EXPECT_NE(made(before).begin(), first.begin());
 }
 
 // A message of several events ends where it has its bytes, and where what is read at once ends.
@@ -235,7 +254,8 @@ TEST_F(KeptMessages, MessagesOfSeveralEventsEndAtTheSamePlaces) {
   const std::int64_t first = end_behind(before);
   const std::int64_t second = end_behind(first);
   EXPECT_GT(first, before);
-  EXPECT_LE(second, first + SharedLog::kEventsAtOnce);
+  EXPECT_EQ(first % SharedLog::kEventsAtOnce, 0);  // whoever was told what before it
+  EXPECT_EQ(second, first + SharedLog::kEventsAtOnce);
   for (const int apart : {1, 2, 40}) EXPECT_EQ(end_behind(first + apart), second) << apart;
 }
 
@@ -253,6 +273,36 @@ TEST_F(KeptMessages, EqualSubscriptionsShareALog) {
   EXPECT_EQ(logs.Of({&likewise}), log);
   EXPECT_NE(logs.Of({&machines}), log);
   EXPECT_NE(logs.Of({&jobs, &machines}), log);
+}
+
+// What went with a job that was deleted takes no room any more: as much as one watch alone may have
+// is kept behind it, to the last byte.
+TEST_F(KeptMessages, WhatWentWithAJobTakesNoRoom) {
+  const std::string half = TextOf(SharedLog::kBytesOfOne / 2);
+  const auto log = LogOfJobs();
+  std::int64_t at = Last();
+  const auto next = [&] {
+    const LogPiece piece = Must(log->After(at, false)).value();
+    at = piece.end;
+    return piece;
+  };
+  const auto size_of = [](const LogPiece& piece) {
+    return sizeof(LogPiece) + piece.message.value().size();
+  };
+  Say({"a", "b", "c", "d", "e", "f", "g", "h"});
+  const std::int64_t other = room.Submit();
+  room.Finish(room.bed.Lease());
+  AwaitTold();
+  while (at < Last()) next();
+  EXPECT_TRUE(room.bed.store().DeleteJob(other, "anna"));
+  AwaitTold();
+  const std::size_t of_deletion = size_of(next());
+  const std::int64_t before = at;
+  Say({half.substr(of_deletion)});
+  const LogPiece first = next();
+  Say({half});
+  ASSERT_EQ(of_deletion + size_of(first) + size_of(next()), SharedLog::kBytesOfOne);
+  EXPECT_EQ(Must(log->After(before, false))->message->begin(), first.message->begin());
 }
 
 // What was made of the events before a job was deleted is gone already when room is made.

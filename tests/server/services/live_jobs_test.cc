@@ -184,6 +184,7 @@ TEST_F(LiveJobs, WhatWasCutOffIsDecided) {
   EXPECT_EQ(decide(Request::DECISION_RESTART).job(), JobName(run + 1));
   EXPECT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(Must(store().GetJob(run + 1)).state, storage::JobState::kQueued);
+  EXPECT_EQ(Must(store().GetJob(run + 1)).caller, "local");
   EXPECT_EQ(host->TakeOrders().size(), 1U);
   request.set_request_id("q");
   request.set_preview_token("p");
@@ -191,6 +192,7 @@ TEST_F(LiveJobs, WhatWasCutOffIsDecided) {
   request.set_halt_at_entry(true);
   EXPECT_EQ(decide(Request::DECISION_RESUME_AT_STEP).job(), JobName(run + 2));
   EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(Must(store().GetJob(run + 2)).caller, "local");
   const auto continued = host->TakeOrders();
   ASSERT_EQ(continued.size(), 1U);
   EXPECT_EQ(continued[0].caller(), "local");

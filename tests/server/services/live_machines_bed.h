@@ -130,7 +130,11 @@ inline void Fill(google::protobuf::Message& message, int depth = 2) {
 // Services over a channel of this process, and a host of optimo-1.
 class LiveMachines : public testing::Test {
  protected:
-  LiveMachines() {
+  // `patience`: of calls that wait for a host.
+  explicit LiveMachines(std::chrono::milliseconds patience = std::chrono::minutes(1))
+      : machine_service_(
+            needs_, {*executor_, open_, refusing, feed_, "instance"},
+            {.hosts = &hosts, .processes = &processes, .runs = &runs_, .patience = patience}) {
     grpc::ServerBuilder builder;
     for (grpc::Service* service :
          std::initializer_list<grpc::Service*>{&job_service_, &machine_service_, &handbox_service_})
@@ -297,9 +301,7 @@ class LiveMachines : public testing::Test {
   JobResults results_{bed_.server.store(), book, tools_};
   JobService job_service_{needs_, *executor_, book,  results_,  bed_.dispatcher(),
                           runs_,  feed_,      open_, "instance"};
-  MachineService machine_service_{needs_,
-                                  {*executor_, open_, refusing, feed_, "instance"},
-                                  {&hosts, &processes, &runs_, false}};
+  MachineService machine_service_;
   HandboxService handbox_service_{needs_, {*executor_, open_, refusing, feed_, &hosts}};
   std::unique_ptr<grpc::Server> server_;
 };

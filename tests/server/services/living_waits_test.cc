@@ -27,6 +27,7 @@ class HesitatingHost final : public HostLink {
 
 class LivingWaits : public LiveMachines {
  protected:
+  using LiveMachines::LiveMachines;
   // So that a call that does not wait has been answered; one that does does not mind.
   static void LetItWait() {
     int looks = 0;
@@ -115,6 +116,36 @@ TEST_F(LivingWaits, DisablingIsAnsweredWhenItsHostHasGone) {
   EXPECT_FALSE(hosts.IsHosted("mill-1"));
   left.wait();
   EXPECT_FALSE(slow->closed());  // it went by itself
+}
+
+class ImpatientWaits : public LivingWaits {
+ protected:
+  ImpatientWaits() : LivingWaits(std::chrono::milliseconds(50)) {}
+};
+
+// For neither a host that does not come nor one that does not go is it waited for ever: the one has
+// the machine when it comes later, the other has none any more.
+TEST_F(ImpatientWaits, NobodyWaitsForEver) {
+  v1::HostHello hello = HelloOf("hall");
+  hello.set_machine("machines/mill-1");
+  const auto stubborn = std::make_shared<HesitatingHost>();
+  ASSERT_TRUE(hosts.Join(stubborn, hello));
+  auto disabled = std::async(std::launch::async, [&] {
+    v1::DisableMachineRequest request;
+    request.set_machine("machines/mill-1");
+    request.set_request_id("r");
+    v1::MachineStatus told;
+    const grpc::Status end = machines->DisableMachine(Context().get(), request, &told);
+    EXPECT_TRUE(end.ok()) << end.error_message();
+    return told.state();
+  });
+  Taken("office");
+  ExpectRefused(grpc::StatusCode::UNAVAILABLE, "no host of office has come yet");
+  EXPECT_THAT(status.error_message(), testing::HasSubstr("CELL-E9424"));
+  EXPECT_NE(Joined("office"), nullptr);
+  EXPECT_EQ(disabled.get(), v1::MACHINE_STATE_OFF);
+  EXPECT_FALSE(hosts.IsHosted("mill-1"));
+  EXPECT_TRUE(stubborn->closed());
 }
 
 TEST_F(LivingWaits, ADisableThatIsRefusedLeavesAllAsItWas) {

@@ -1,5 +1,7 @@
 // Calls with one answer, over a channel of this process: what the store refuses is what they end
 // with, and the limits of what they take.
+#include <functional>
+
 #include "proto/bridge/sha256.h"
 #include "proto/recording/recording.h"
 #include "server/base/names.h"
@@ -408,6 +410,57 @@ TEST_F(UnaryCalls, AnArchiveGoesOut) {
   EXPECT_TRUE(back.programs(0).source().content() == program.source().content());
   EXPECT_EQ(exported("projects/none"), "");
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND) << status.error_message();
+}
+
+// What goes out in parts is read from the store once, however many they are.
+TEST_F(UnaryCalls, WhatGoesOutInPartsIsReadOnce) {
+  // Calls to the store until all of it has come.
+  const auto reads = [&](const std::function<grpc::Status()>& fetch) {
+    for (int call = 1;; ++call) {
+      store_.FailAt(call);
+      const grpc::Status end = fetch();
+      const bool failed = store_.failed();
+      EXPECT_NE(end.ok(), failed) << "call " << call << ": " << end.error_message();
+      store_.FailAt(0);
+      if (!failed) return call - 1;
+    }
+  };
+  const auto project = [&](const std::string& id, std::size_t bytes) {
+    v1::CreateProjectRequest request;
+    request.set_project_id(id);
+    v1::ProjectProgram& program = *request.mutable_project()->add_programs();
+    program.set_slot(5);
+    program.mutable_source()->set_file_name("a.rml");
+    program.mutable_source()->set_content(storage::Noise(bytes, 1));
+    grpc::ClientContext context;
+    v1::Project made;
+    EXPECT_TRUE(projects->CreateProject(&context, request, &made).ok());
+    return reads([&] {
+      grpc::ClientContext export_context;
+      export_context.set_deadline(std::chrono::system_clock::now() + kPatience);
+      const auto reader = projects->ExportProject(
+          &export_context, FromText<v1::ExportProjectRequest>("name: 'projects/" + id + "'"));
+      for (v1::ExportProjectResponse part; reader->Read(&part);) {
+      }
+      return reader->Finish();
+    });
+  };
+  EXPECT_EQ(project("large", 1'500'000), project("small", 1000));
+  const auto journal = [&](std::size_t bytes) {
+    const std::string job =
+        JobName(EndedJob({{.name = "recording", .bytes = std::string(bytes, 'x')}}));
+    return reads([&] {
+      grpc::ClientContext context;
+      context.set_deadline(std::chrono::system_clock::now() + kPatience);
+      const auto reader = machines->ExportJournal(
+          &context,
+          FromText<v1::ExportJournalRequest>("machine: 'machines/optimo-1' job: '" + job + "'"));
+      for (v1::ExportJournalResponse part; reader->Read(&part);) {
+      }
+      return reader->Finish();
+    });
+  };
+  EXPECT_EQ(journal(600'000), journal(10));
 }
 
 // project.proto ImportProject: its name first, once, then its bytes.

@@ -58,6 +58,7 @@ TEST_F(StandingLane, WhatHasNoRoomIsRefused) {
        "name: 'jobs/1' decision: DECISION_RESTART reason: 'it burnt' control_token: 't' "
        "request_id: 'r'");
   ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, text);
+  EXPECT_THAT(status.error_message(), testing::HasSubstr("CELL-E9020"));
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kPatience);
   v1::Project response;
@@ -66,6 +67,7 @@ TEST_F(StandingLane, WhatHasNoRoomIsRefused) {
   writer->WritesDone();
   status = writer->Finish();
   ExpectRefused(grpc::StatusCode::RESOURCE_EXHAUSTED, text);
+  EXPECT_THAT(status.error_message(), testing::HasSubstr("CELL-E9020"));
   GoOn();
   EXPECT_TRUE(Eventually([&] {
     Call(projects, &v1::ProjectService::Stub::ListProjects, "");

@@ -71,6 +71,13 @@ TEST(Envelope, LengthHasTheHighestByteFirst) {
   EXPECT_EQ(MakeEnvelope(0, std::string(0x10203, 'x')).substr(0, 5), std::string("\0\0\1\2\3", 5));
   EXPECT_EQ(MakeEnvelope(0, std::string(0x1020304, 'x')).substr(0, 5),
             std::string("\0\1\2\3\4", 5));
+  for (const std::size_t size :
+       {std::size_t{0x102}, std::size_t{0x10203}, std::size_t{0x1020304}}) {
+    const std::string whole = MakeEnvelope(0, std::string(size, 'x'));
+    const EnvelopeRead read = ReadSingleEnvelope(whole);
+    ASSERT_TRUE(read.message) << read.problem;
+    EXPECT_EQ(read.message->size(), size);
+  }
 }
 
 TEST(Envelope, OneMessageAndNothingElse) {

@@ -3,7 +3,11 @@
 #include <google/protobuf/descriptor.h>
 #include <gtest/gtest.h>
 
+#include <barrier>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "rmlcell/v1/cell.pb.h"
 #include "rmlcell/v1/job.pb.h"
@@ -128,6 +132,37 @@ TEST(EventTexts, TheRoomIsUsedUp) {
   EXPECT_EQ(texts.made(), 3U + kRoom);  // the oldest alone is forgotten
   TextOf(texts, OfSize(10, EventTexts::kKeptMax));
   EXPECT_EQ(texts.made(), 4U + kRoom);
+}
+
+// Whoever asks at the same time may make the text for himself; one of them is kept, and forgotten
+// once.
+TEST(EventTexts, OfThoseWhoAskAtOnceOneIsKept) {
+  constexpr int kAsking = 4;
+  constexpr int kMessages = 100;
+  constexpr std::size_t kCharacters = 100'000;  // twice that with its text: some forty have room
+  EventTexts texts;
+  std::barrier together(kAsking);
+  const auto message = [](std::int64_t sequence) {
+    v1::WatchCellResponse told = Told(sequence);
+    told.mutable_event()->mutable_job()->mutable_message()->set_text(std::string(kCharacters, 'x'));
+    return told;
+  };
+  std::vector<std::thread> asking;
+  for (int i = 0; i < kAsking; ++i) {
+    asking.emplace_back([&] {
+      for (int sequence = 0; sequence < kMessages; ++sequence) {
+        together.arrive_and_wait();
+        TextOf(texts, message(sequence));
+      }
+    });
+  }
+  for (std::thread& thread : asking) thread.join();
+  const std::size_t made = texts.made();
+  EXPECT_GE(made, std::size_t{kMessages});
+  TextOf(texts, message(kMessages - 1));
+  EXPECT_EQ(texts.made(), made);
+  TextOf(texts, message(0));
+  EXPECT_EQ(texts.made(), made + 1);
 }
 
 TEST(EventTexts, WhatIsNoMessageIsAnError) {

@@ -1,6 +1,8 @@
 // Hostile and unusual HTTP, limits, and connections that are used again.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "tests/server/web/fake_cell.h"
@@ -296,6 +298,44 @@ TEST(HttpRefusals, WhoeverIsOneTooManyIsTold) {
   }
 }
 
+// Left unread, a request that is there already would have the system break the connection, which a
+// client may see before its answer. It is there when its client came while the only thread was
+// busy.
+TEST(HttpRefusals, ARequestThatIsThereAlreadyIsTaken) {
+  std::promise<void> busy;
+  std::promise<void> go_on;
+  std::atomic<bool> first = true;
+  const auto logger = [&, may_go_on = go_on.get_future().share()](const WebLogEntry&) {
+    if (!first.exchange(false)) return;
+    busy.set_value();
+    may_go_on.wait();
+  };
+  WebOptions options = AnyPort();
+  options.connections_max = 1;
+  options.read_timeout = std::chrono::hours(1);
+  options.linger_timeout = std::chrono::hours(1);
+  FakeResources resources;
+  const auto web = WebServer::Start(options, nullptr, resources, logger);
+  ASSERT_TRUE(web);
+  RawClient served((*web)->port());
+  std::vector<std::unique_ptr<RawClient>> refused;
+  for (int i = 0; i < 100; ++i) {
+    refused.push_back(std::make_unique<RawClient>((*web)->port()));
+    EXPECT_EQ(refused.back()->Read().status, 503) << i;
+  }
+  served.Send(Get("/favicon.svg"));
+  EXPECT_EQ(served.Read().status, 200);
+  EXPECT_EQ(busy.get_future().wait_for(std::chrono::minutes(1)), std::future_status::ready);
+  RawClient late((*web)->port());
+  EXPECT_TRUE(late.Send(Get("/favicon.svg")));
+  go_on.set_value();
+  EXPECT_EQ(ErrorOf(late.Read()), "503 CELL-E9020");
+  EXPECT_TRUE(late.AtEnd());
+  served.Send(Get("/favicon.svg"));  // of the same thread: it has left the other behind
+  EXPECT_EQ(served.Read().status, 200);
+  EXPECT_TRUE(late.Send("x"));  // ended, and not broken
+}
+
 // A client that is refused before it has sent all may send the rest; then both ends close.
 TEST(HttpRefusals, TheRestOfARefusedRequestIsTaken) {
   WebOptions options = AnyPort();
@@ -326,6 +366,17 @@ TEST_F(HttpLimits, Expectations) {
   EXPECT_EQ(
       Exchange(cell_.port(), head + "Content-Length: 5000\r\nExpect: 100-continue\r\n\r\n").status,
       413);
+}
+
+// RFC 9110 10.1.1: a client of HTTP/1.0 knows no 100, whatever it expects.
+TEST_F(HttpLimits, AnExpectationOfHttp10IsNone) {
+  RawClient client(cell_.port());
+  client.Send("POST " + std::string(kGetJob) +
+              " HTTP/1.0\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+              "Content-Length: 17\r\nExpect: 100-continue\r\n\r\n");
+  EXPECT_FALSE(client.AnswersWithin(milliseconds(200)));
+  client.Send(kJob1);
+  EXPECT_EQ(client.Read().status, 200);
 }
 
 // A second server on the same port is an error that names it.

@@ -95,6 +95,18 @@ TEST_F(KeptConnections, WhoLeavesLaterIsLoggedAsUnfinished) {
   EXPECT_FALSE(log[1].finished);
 }
 
+// Who goes while a long answer is on its way has not had it.
+TEST_F(KeptConnections, WhoLeavesWithinAnAnswerIsLoggedAsUnfinished) {
+  RawClient leaving(cell_.port(), 4096);
+  leaving.Send(Post(kGetJob, "application/json", R"({"name":"jobs/huge"})"));
+  EXPECT_EQ(leaving.ReadHead().status, 200);
+  leaving.Reset();
+  ASSERT_TRUE(FakeCell::Eventually([&] { return cell_.log().size() == 1; }));
+  const WebLogEntry entry = cell_.log()[0];
+  EXPECT_EQ(entry.http_status, 200);
+  EXPECT_FALSE(entry.finished);
+}
+
 // A download that broke is no finished request, though its head went out.
 TEST_F(KeptConnections, ABrokenDownloadIsLoggedAsUnfinished) {
   EXPECT_FALSE(Asked(Get("/v1/jobs/17/artifacts/broken")).complete);

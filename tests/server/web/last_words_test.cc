@@ -208,6 +208,41 @@ TEST(LastWords, AnAnswerMayTakeLongerThanARequest) {
   });
 }
 
+// What has come already of a further request is its beginning: that one has the time of a request,
+// and not the time between two.
+TEST(LastWords, AFirstByteBeginsARequest) {
+  ExpectOfSomeTime([](milliseconds time) {
+    WebOptions options = AnyPort();
+    options.read_timeout = time;
+    options.idle_timeout = hours(1);
+    const FakeCell cell(options);
+    RawClient client(cell.port());
+    client.Send(Get("/healthz") + "G");
+    return client.Read().status == 200 && client.Read().status == 408;
+  });
+}
+
+// web_server.h: a reader is stuck when nothing goes on. One that is slow may take longer for an
+// answer than a write may be stuck.
+TEST(LastWords, AReaderMayBeSlow) {
+  constexpr std::size_t kPart = std::size_t{1} << 20U;  // more than the buffers of a connection
+  ExpectOfSomeTime([](milliseconds time) {
+    WebOptions options = AnyPort();
+    options.write_timeout = time;
+    const FakeCell cell(options);
+    RawClient client(cell.port(), 64 << 10);
+    client.Send(Post(kGetJob, "application/json", R"({"name":"jobs/huge"})"));
+    const std::string part(kPart, 'h');
+    for (int i = 0; i < 6; ++i) {
+      if (!client.ReadUntil(part).ends_with(part)) return false;
+      // A call that is given up takes its time.
+      const std::string half = "Connect-Timeout-Ms: " + std::to_string(time.count() / 2) + "\r\n";
+      Exchange(cell.port(), Post(kGetJob, "application/json", kSlowCall, half));
+    }
+    return true;
+  });
+}
+
 // The port is free as soon as its server is gone, though the system still waits
 // for stray packets of connections that the server ended first.
 TEST(LastWords, APortIsFreeAgainAtOnce) {

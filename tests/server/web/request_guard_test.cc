@@ -76,6 +76,16 @@ TEST(Host, LiteralsWhenAllAddressesAreListenedOn) {
   EXPECT_FALSE(IsOwnHost(rules, "10.1.2.3.evil.example"));
 }
 
+// Nothing is no name: not that of a Host which cannot be read, whatever is configured.
+TEST(Host, AnEmptyNameIsNobodys) {
+  GuardRules rules = Rules();
+  rules.host_names.emplace_back();
+  for (const std::string_view none : {"", ":80", "[]", "[]:80", "localhost:x", "[::1", "[::1]x"}) {
+    EXPECT_FALSE(IsOwnHost(rules, none)) << none;
+  }
+  EXPECT_TRUE(IsOwnHost(rules, "cell.shop"));
+}
+
 TEST(Guard, OriginsAndSites) {
   const GuardRules rules = Rules();
   EXPECT_FALSE(RefuseRequest(rules, Request({})));

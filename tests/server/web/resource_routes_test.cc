@@ -22,6 +22,10 @@ TEST(ResourceRoutes, Artifacts) {
   EXPECT_EQ(path.artifact, "picture.svg");
   const ResourceRoute escaped = RouteResource(At("/v1/jobs/17/artifacts/a%20b%c3%bc"));
   EXPECT_EQ(std::get<ArtifactPath>(*escaped.path).artifact, "a b\xC3\xBC");
+  // RFC 3986: in a path a plus sign is one; a blank it is in the queries of forms.
+  const ResourceRoute plus = RouteResource(At("/v1/jobs/1+7/artifacts/a+b"));
+  EXPECT_EQ(std::get<ArtifactPath>(*plus.path).job, "1+7");
+  EXPECT_EQ(std::get<ArtifactPath>(*plus.path).artifact, "a+b");
 }
 
 // An escaped slash or dot never becomes part of a path.

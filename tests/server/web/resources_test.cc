@@ -162,6 +162,18 @@ TEST_F(Resources, Upload) {
   EXPECT_GT(cell_.resources().appended, 10);  // piece by piece
 }
 
+// web_server.h: each 64 KiB of an upload have the time to be read, so they are one piece.
+TEST_F(Resources, PiecesOfAnUpload) {
+  for (const auto& [bytes, pieces] : {std::pair{65'536U, 1}, {65'537U, 2}, {131'072U, 2}}) {
+    const int before = cell_.resources().appended;
+    EXPECT_EQ(
+        Exchange(cell_.port(), Post(kContent, "application/octet-stream", std::string(bytes, 'x')))
+            .status,
+        200);
+    EXPECT_EQ(cell_.resources().appended - before, pieces) << bytes;
+  }
+}
+
 TEST_F(Resources, UploadInChunksAndWithContinue) {
   RawClient client(cell_.port());
   client.Send("POST " + std::string(kContent) +

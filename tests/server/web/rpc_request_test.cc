@@ -224,6 +224,38 @@ TEST_F(Decoding, OfWhatIsNone) {
             kCodeInvalidArgument);
 }
 
+// The first thing that is wrong is what is told, in the words for a developer.
+TEST_F(Decoding, ToldWithItsReason) {
+  const auto get = [](std::string query) {
+    return Decode(RequestFor("GET", kGet, {}, std::move(query)));
+  };
+  const auto content = [](std::string name, std::string value) {
+    return Posted("application/json", {{std::move(name), std::move(value)}}, "{", kStream);
+  };
+  const std::vector<std::pair<RpcDecoding, std::string>> rows = {
+      {get("message=%&base64=1"), "the query has a malformed percent escape"},
+      {get("encoding=xml&message=***&base64=1"), "encoding is neither json nor proto"},
+      {get("compression=gzip&message=***&base64=1"), "compressed messages are not offered"},
+      {get("message=***&base64=1"), "message is not base64"},
+      {get("message=***"), "the JSON is no rmlcell.v1.GetJobRequest"},
+      {content("connect-protocol-version", "2"), "connect-protocol-version is not 1"},
+      {content("grpc-timeout", "1x"), "grpc-timeout is malformed"},
+      {content("connect-timeout-ms", "soon"), "connect-timeout-ms is malformed"},
+      {content("grpc-encoding", "gzip"), "grpc-encoding gzip is not offered"},
+      {content("last-event-id", "x"), "Last-Event-ID is not the id of an event of this server"},
+      {Posted("application/json", {{"content-encoding", "br"}, {"last-event-id", "x"}}, "",
+              kStream),
+       "content-encoding br is not offered"},
+      {Posted("application/grpc-web", {}, "abc"), "the body holds no whole envelope"},
+      {Posted("application/grpc-web", {}, MakeEnvelope(2, "x")), "the envelope has unknown flags"},
+      {Posted("application/grpc-web-text", {}, "***"), "the body is not base64"},
+      {Posted("application/proto", {}, "\xFF\xFF"), "the bytes are no rmlcell.v1.GetJobRequest"}};
+  for (const auto& [decoding, reason] : rows) {
+    EXPECT_NE(decoding.status.message.find(": " + reason), std::string::npos)
+        << reason << " | " << decoding.status.message;
+  }
+}
+
 // Each protocol has a header of its own; with both, that of the form counts.
 TEST_F(Decoding, OfDeadlines) {
   using std::chrono::milliseconds;

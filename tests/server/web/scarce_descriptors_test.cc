@@ -1,7 +1,9 @@
 // The web port of a process that can open nothing for a while.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <future>
 #include <string>
@@ -31,6 +33,32 @@ TEST(ScarceDescriptors, WhoComesMeanwhileIsServedLater) {
   }
   EXPECT_EQ(client.Read().status, 200);
   EXPECT_EQ(Exchange(port, Get("/favicon.svg")).status, 200);
+}
+
+// web_server.h: each time of waiting is told once, however long it takes.
+TEST(ScarceDescriptors, EachTimeOfWaitingIsToldOnce) {
+  std::array<std::promise<std::string>, 64> told;  // more than there is time for
+  std::array<std::future<std::string>, 64> heard;
+  for (std::size_t i = 0; i < told.size(); ++i) heard[i] = told[i].get_future();
+  std::size_t count = 0;  // of the thread that takes connections
+  FakeResources resources;
+  const auto web = WebServer::Start(AnyPort(), nullptr, resources, {}, [&](const std::string& why) {
+    told.at(count++).set_value(why);
+  });
+  ASSERT_TRUE(web) << web.error().detail;
+  for (const std::size_t round : {0U, 1U, 2U}) {
+    RawClient client;
+    {
+      const NoDescriptors none;
+      client.Connect((*web)->port());
+      EXPECT_TRUE(client.Send(Get("/favicon.svg")));
+      EXPECT_EQ(heard[round].wait_for(std::chrono::minutes(1)), std::future_status::ready) << round;
+      EXPECT_EQ(heard[round + 1].wait_for(std::chrono::milliseconds(400)),
+                std::future_status::timeout)
+          << round;
+    }
+    EXPECT_EQ(client.Read().status, 200) << round;
+  }
 }
 
 }  // namespace

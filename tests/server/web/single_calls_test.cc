@@ -103,6 +103,7 @@ class SingleCalls : public ::testing::Test {
     if (waiting) call->ReadNext();
     call->Cancel();
     call->Cancel();
+    if (!waiting) call->ReadNext();  // nothing comes any more, and nothing is waited for
     auto end = ended.get_future();
     if (end.wait_for(std::chrono::minutes(1)) != std::future_status::ready) std::abort();
     return end.get();
@@ -172,6 +173,21 @@ TEST_F(SingleCalls, HoldNoChannelWhenTheirEndIsTold) {
   EXPECT_EQ(channel_.use_count(), owners + 1);
   call->Cancel();
   EXPECT_EQ(at_end.get_future().get(), owners);
+}
+
+// rpc_call.h: a call lives until it has ended, also where nobody holds it any more.
+TEST_F(SingleCalls, GoOnWithoutAnybodyWhoHoldsThem) {
+  service_.answers = 0;
+  std::promise<RpcStatus> ended;
+  auto end = ended.get_future();
+  std::shared_ptr<RpcCall> call =
+      RpcCall::Start(channel_, {.method = "/a.B/C", .message = {}, .metadata = {}, .timeout = {}},
+                     {.on_message = [](const std::string&) {},
+                      .on_end = [&](const RpcCallEnd& told) { ended.set_value(told.status); }});
+  call->ReadNext();
+  call.reset();
+  if (end.wait_for(std::chrono::minutes(1)) != std::future_status::ready) std::abort();
+  EXPECT_EQ(end.get().code, 0);
 }
 
 // A call that is left ends, and says that it was cancelled, whether something is waited for or not.

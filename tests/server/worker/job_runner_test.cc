@@ -32,6 +32,40 @@ TEST_F(JobRunnerTest, JoinsWithItsNameAndWhatItCanDo) {
   EXPECT_GT(hello.process_id(), 0);
 }
 
+// worker.proto: from its first beat on an attempt counts, which waits for no third of a lease.
+TEST_F(JobRunnerTest, ItsHeartBeatsAtOnce) {
+  Work(Assignment(v1::JOB_KIND_CHECK, "STOP\n"));
+  ASSERT_GT(heard_.size(), 2U);
+  EXPECT_TRUE(heard_[1].has_heartbeat());
+  EXPECT_FALSE(heard_[1].heartbeat().has_progress());
+  EXPECT_EQ(heard_[1].heartbeat().lease().SerializeAsString(), Lease().SerializeAsString());
+}
+
+// Nobody holds the lease of a job that is over: its heart rests.
+TEST_F(JobRunnerTest, NoHeartBeatsBehindAJob) {
+  server.lease_ms = 3;
+  line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+  JobRunner runner(*line_, stopping, processor_time);
+  EXPECT_TRUE(runner.Work(Assignment(v1::JOB_KIND_CHECK, "STOP\n")));
+  v1::WorkRequest behind;
+  *behind.mutable_hand_back()->mutable_lease() = Lease(9);  // of no job that there is
+  ASSERT_TRUE(line_->Send(behind));
+  line_->Receive(std::chrono::milliseconds(60));  // as long as some beats, and nothing comes
+  line_->Close();
+  while (!line_->gone()) line_->Receive(std::chrono::seconds(60));
+  const std::vector<v1::WorkRequest> heard = server.requests();
+  const auto from = std::ranges::find_if(heard, &v1::WorkRequest::has_hand_back);
+  ASSERT_NE(from, heard.end());
+  EXPECT_TRUE(std::none_of(from, heard.end(),
+                           [](const v1::WorkRequest& one) { return one.has_heartbeat(); }));
+}
+
+TEST_F(JobRunnerTest, SaysOfWhichPoolItIs) {
+  line_ = *ServerLine::Join(
+      {.server = server.address(), .join_token = "secret", .name = "w", .pool = "paced"});
+  EXPECT_EQ(server.requests().front().hello().pool(), "paced");
+}
+
 // server/worker/server_line.h: the reason of the server has a code of its own.
 TEST_F(JobRunnerTest, IsToldWhyItMayNotJoin) {
   const std::vector<std::pair<grpc::StatusCode, ErrorCode>> rows = {

@@ -177,6 +177,32 @@ TEST_F(OrderedRuns, NoHeightsWithoutNews) {
   EXPECT_EQ(empty, 0);
 }
 
+// Whoever watches sees what happens on the way, and not when a batch is full or the run is over.
+TEST_F(OrderedRuns, WhatHappensIsToldOnTheWay) {
+  bool ordered = false;
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::JobEvent& event : message.events().events()) {
+      if (event.has_signal() && !std::exchange(ordered, true))
+        server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+    }
+  };
+  Work(Paced("OL[20]=ON\nDELAY 100\n", 20.0));
+  EXPECT_TRUE(ordered);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+}
+
+// Budget.output_bytes: what is told counts as it is told. A run that tells too much ends then: some
+// 400 of the 20,000 changes of its output fit.
+TEST_F(OrderedRuns, ARunThatTellsTooMuchEnds) {
+  v1::WorkerAssignment assignment = Paced("10 OL[20]=ON\nOL[20]=OFF\nDELAY 0.1\nGOTO 10\n", 100.0);
+  assignment.mutable_budget()->set_output_bytes(20'000);
+  assignment.mutable_budget()->set_virtual_time_ns(1'000'000'000'000);
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_BUDGET_EXCEEDED);
+  EXPECT_EQ(Outcome().code(), "CELL-E9306");
+  EXPECT_LT(Events().size(), 5'000U);
+}
+
 // A window of events may be under way: the one beyond it waits.
 TEST_F(OrderedRuns, AWindowOfEventsIsUsedToItsEnd) {
   server.window = 5;
