@@ -34,7 +34,6 @@ using Clock = std::chrono::steady_clock;
 // A host has the recordings of its newest runs alone (MachineRecorder::kKept).
 constexpr int kNewest = 4;
 constexpr std::chrono::milliseconds kLookAtProcess{20};
-constexpr std::chrono::seconds kMachineLookedAtAgainAfter{5};
 constexpr std::chrono::seconds kFetchPatience{30};
 
 struct Product {
@@ -125,7 +124,7 @@ void RunProducts::Work(const std::stop_token& stop) {
     }
     if (done) continue;
     const std::lock_guard lock(mutex_);
-    due_.try_emplace(machine, Clock::now() + kMachineLookedAtAgainAfter);
+    due_.try_emplace(machine, Clock::now() + needs_.looked_at_again_after);
   }
 }
 

@@ -27,6 +27,8 @@ class RunProducts {
     std::string log_level{};
     std::string log_format{};
     std::chrono::seconds patience{600};  // with one of them
+    // A machine of whose runs not all was made.
+    std::chrono::milliseconds looked_at_again_after = std::chrono::seconds(5);
   };
   explicit RunProducts(Needs needs);
   ~RunProducts();  // what is under way is made later

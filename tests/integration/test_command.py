@@ -22,9 +22,12 @@ def null_devices(process):
     """The descriptors that lead to the null device, and how each is open."""
     found = {}
     for number in os.listdir(f"/proc/{process}/fd"):
-        if os.readlink(f"/proc/{process}/fd/{number}") == os.devnull:
-            told = pathlib.Path(f"/proc/{process}/fdinfo/{number}").read_text()
-            found[int(number)] = int(told.partition("flags:")[2].split()[0], 8) & os.O_ACCMODE
+        try:
+            if os.readlink(f"/proc/{process}/fd/{number}") == os.devnull:
+                told = pathlib.Path(f"/proc/{process}/fdinfo/{number}").read_text()
+                found[int(number)] = int(told.partition("flags:")[2].split()[0], 8) & os.O_ACCMODE
+        except FileNotFoundError:  # closed meanwhile
+            pass
     return found
 
 

@@ -10,6 +10,7 @@
 
 #include "storage/sqlite/database.h"
 #include "tests/storage/faulty_disk.h"
+#include "tests/storage/quiet_process.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage {
@@ -180,6 +181,26 @@ TEST_F(SqliteFaults, FailedCheckpointLosesNothing) {
   bed_.Reopen();
   EXPECT_TRUE(Must(store().GetProgram("m", 1)).object == object);
   EXPECT_EQ(JobCount(), 10U);
+}
+
+// A log that a reader keeps from its end is moved again when it has grown as much once more, and
+// not with each write until then.
+TEST_F(SqliteFaults, ALogThatAReaderKeepsIsNotMovedWithEachWrite) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  sqlite::Database reader =
+      Must(sqlite::Database::Open(bed_.path(), sqlite::Database::Access::kReadOnly, {}));
+  const std::string look = "BEGIN; SELECT count(*) FROM job";
+  Must(reader.Execute(look));
+  Must(store().PutPrograms("m", {{.slot = 1, .object = Noise(20 << 20, 1)}}, {}));
+  EXPECT_TRUE(ComesToRest());
+  // From here on it sees all of the log, so that all of it could be moved.
+  Must(reader.Execute("COMMIT; " + look));
+  const auto size = std::filesystem::file_size(bed_.path());
+  EXPECT_LT(size, std::uintmax_t{4} << 20);
+  for (int i = 0; i < 3; ++i) Must(store().PutMachine({.id = Numbered("m", i)}, 0));
+  EXPECT_TRUE(ComesToRest());
+  EXPECT_EQ(std::filesystem::file_size(bed_.path()), size);
+  Must(reader.Execute("COMMIT"));
 }
 
 // Watchers and counts tell nothing of what was not committed.

@@ -327,5 +327,34 @@ TEST(SqliteTidying, WhatCouldNotBeRemovedGoesWithTheNext) {
   EXPECT_EQ(jobs(), 1);
 }
 
+// writer.cc: what could not be removed is tried again by the next write that leaves something to
+// remove, and by no other one: the disk is not asked in vain.
+TEST(SqliteTidying, AWriteThatLeavesNothingTidiesNothing) {
+  failing_statements::Register();
+  SqliteBed bed;
+  const auto put = [&](const std::string& id, std::uint64_t seed) {
+    Must(bed.store().PutProject({.id = id, .body = Noise(kContentInRecordMax + 1, seed)},
+                                kAnyRevision));
+  };
+  put("first", 1);
+  put("second", 2);
+  EXPECT_TRUE(ComesToRest());
+  const auto blobs = [&] { return NumberIn(bed.path(), "SELECT count(*) FROM blob"); };
+  EXPECT_EQ(blobs(), 2);
+  failing_statements::Fail(failing_statements::Of::kSweeping, 0);
+  Must(bed.store().DeleteProject("first", kAnyRevision));
+  EXPECT_TRUE(ComesToRest());
+  EXPECT_FALSE(failing_statements::Heal().empty());
+  EXPECT_EQ(blobs(), 2);
+  // By the store's own thread, which is the one that tidies.
+  bed.store().Submit({.kind = "CHECK", .more_come = true}, [](const Result<SubmittedJob>&) {});
+  EXPECT_TRUE(ComesToRest());
+  EXPECT_EQ(NumberIn(bed.path(), "SELECT count(*) FROM job"), 1);
+  EXPECT_EQ(blobs(), 2);
+  Must(bed.store().DeleteProject("second", kAnyRevision));
+  EXPECT_TRUE(ComesToRest());
+  EXPECT_EQ(blobs(), 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

@@ -1,13 +1,16 @@
 // Opening an embedded store: files and modes, one process only, newer, foreign and damaged files.
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <random>
 #include <sstream>
 
+#include "storage/sqlite/store_files.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage {
@@ -129,6 +132,26 @@ TEST(SqliteOpen, StoreInUseIsRefused) {
   ASSERT_EQ(waitpid(child, &ended, 0), child);
   ASSERT_TRUE(WIFEXITED(ended));
   EXPECT_EQ(WEXITSTATUS(ended), 9);  // crash_child: the store could not be opened
+}
+
+// Who had no room to tell his number is "another process", and not the one that held it before.
+TEST(SqliteOpen, AHolderWithoutANumberIsNotTheOneBefore) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db.lock");
+  WriteFile(path, "1\n");
+  struct rlimit limit {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  struct rlimit no_room = limit;
+  no_room.rlim_cur = 0;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &no_room), 0);
+  const Result<sqlite::StoreLock> held = sqlite::StoreLock::Take(path);
+  EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  static_cast<void>(std::signal(SIGXFSZ, handler));
+  ASSERT_TRUE(held);
+  const Result<sqlite::StoreLock> second = sqlite::StoreLock::Take(path);
+  ASSERT_EQ(CodeOf(second), ErrorCode::kCellStoreBusy);
+  EXPECT_EQ(second.error().detail, path + " is held by another process");
 }
 
 TEST(SqliteOpen, LockIsFreeAfterTheStoreIsClosed) {

@@ -433,6 +433,35 @@ TEST(SqliteRefusals, AnArtifactWhoseContentIsNotWhole) {
   EXPECT_EQ(Must(bed.store().GetArtifact(1, "main")).size, 10);
 }
 
+// 9104: what is told of an artifact stands before its bytes, and is told though those that did not
+// fit on the page of its row are lost.
+TEST(SqliteRefusals, AnArtifactIsToldWithoutTheRestOfItsBytes) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  // A page holds a row of up to 4061 bytes whole, and 489 bytes of a longer one: some of these.
+  const std::string media_type(434, 'm');
+  const std::string bytes = Noise(kProductInRowMax, 1);
+  Must(bed.store().SubmitAndWait(
+      {.kind = "CHECK",
+       .attachments = {{.name = "part", .media_type = media_type, .bytes = bytes}}}));
+  bed.Close();
+  std::string file = ReadFile(bed.path());
+  const std::string before = media_type + Sha256(bytes);
+  const std::size_t found = file.find(before);
+  ASSERT_NE(found, std::string::npos);
+  const std::size_t begin = found + before.size() + 2;  // their size stands between
+  std::size_t on_page = 0;
+  while (on_page < bytes.size() && file.at(begin + on_page) == bytes[on_page]) ++on_page;
+  ASSERT_GT(on_page, 0U);
+  ASSERT_LT(on_page, bytes.size());
+  file.replace(begin + on_page, 4, "\xFF\xFF\xFF\xFF");  // the number of the page of the rest
+  WriteFile(bed.path(), file);
+  bed.Reopen();
+  EXPECT_EQ(CodeOf(bed.store().ReadArtifact(1, "part")), kCorruptFile);
+  EXPECT_EQ(Must(bed.store().GetArtifact(1, "part")).media_type, media_type);
+  EXPECT_EQ(Must(bed.store().ListArtifacts(1)).size(), 1U);
+}
+
 // 9104: a request that counts as known, by an index that is none of ours, and has no job.
 TEST(SqliteRefusals, ARequestIdWithoutItsJob) {
   SqliteBed bed;

@@ -308,5 +308,72 @@ TEST(SqliteLoneWrites, WhoFindsNothingWaitsForNobody) {
   }
 }
 
+// How often the store asks for the time: for each write that it runs, and for each request that it
+// tries.
+class SqliteTries {
+ public:
+  SqliteTries()
+      : store_(Must(OpenSqliteStore({.path = directory_.File("cell.db")}, [this] {
+          ++tries_;
+          return SystemTime();
+        }))) {}
+
+  Store& store() { return *store_; }
+  void Await(const JobRequest& request) {
+    store_->AwaitJobs(request, [](const Result<std::vector<LeasedJob>>&) {});
+  }
+  template <class Act>
+  int During(Act act) {
+    EXPECT_TRUE(ComesToRest());
+    const int before = tries_;
+    act();
+    EXPECT_TRUE(ComesToRest());
+    return tries_ - before;
+  }
+
+ private:
+  const TestDirectory directory_;
+  std::atomic<int> tries_ = 0;
+  std::unique_ptr<Store> store_;
+};
+
+// writer.h: of those who wait for the same, with nothing there for the first one, no other is
+// tried.
+TEST(SqliteStanding, OfThoseWhoAskForTheSameOneIsTried) {
+  const auto tries = [](const std::vector<JobRequest>& requests) {
+    SqliteTries bed;
+    for (const JobRequest& request : requests) bed.Await(request);
+    return bed.During([&] { Must(bed.store().SubmitAndWait({.kind = "CHECK"})); });
+  };
+  const JobRequest one{.worker = "a", .kinds = {"SIMULATE"}};
+  JobRequest same = one;
+  same.worker = "b";
+  const int first = tries({one});
+  EXPECT_EQ(tries({}), first - 1);
+  EXPECT_EQ(tries({one, same, same}), first);
+  JobRequest kinds = same, pools = same, machines = same;
+  kinds.kinds = {"SIMULATE", "RUN"};
+  pools.pools = {"p"};
+  machines.run_machines = {"m"};
+  EXPECT_EQ(tries({one, kinds}), first + 1);
+  EXPECT_EQ(tries({one, pools}), first + 1);
+  EXPECT_EQ(tries({one, machines}), first + 1);
+}
+
+// A RUN that is over lets the next one of its machine begin; the end of another job lets nothing
+// begin, and nobody who waits is tried.
+TEST(SqliteStanding, TheEndOfARunIsWaitedFor) {
+  const auto tries = [](const std::string& kind, bool waits) {
+    SqliteTries bed;
+    Must(bed.store().SubmitAndWait({.kind = "CHECK"}));  // ready, and not asked for
+    const std::int64_t job = Must(bed.store().SubmitAndWait({.machine = "m", .kind = kind})).job.id;
+    if (waits) bed.Await({.worker = "w", .kinds = {"SIMULATE"}});
+    return bed.During([&] { Must(bed.store().RequestCancel(job, {})); });
+  };
+  EXPECT_EQ(tries("CHECK", true), tries("CHECK", false));
+  const std::string run(kRunKind);
+  EXPECT_EQ(tries(run, true), tries(run, false) + 1);
+}
+
 }  // namespace
 }  // namespace rmlcell::storage

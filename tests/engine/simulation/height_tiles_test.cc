@@ -113,6 +113,25 @@ TEST(HeightTiles, WhatIsNotedMayLieBesideTheBlock) {
   EXPECT_EQ(changes.Take(field, 100).size(), 9U);
 }
 
+// What lies within the first column, or the first row, alone is of their tiles.
+TEST(HeightTiles, TheFirstCellsAreNoted) {
+  HeightField field = HeightField::Of(kTiledBlock).value();
+  HeightChanges changes(field);
+  EXPECT_TRUE(changes.Take(field, 100).empty());
+  CutCell(field, 0, 70, -1.0);
+  changes.Note(10.25, 10.75, 50.25, 50.75);
+  std::vector<HeightTile> tiles = changes.Take(field, 100);
+  ASSERT_EQ(tiles.size(), 1U);
+  EXPECT_EQ(tiles[0].column, 0U);
+  EXPECT_EQ(tiles[0].row, 64U);
+  CutCell(field, 70, 0, -1.0);
+  changes.Note(80.25, 80.75, -19.75, -19.25);
+  tiles = changes.Take(field, 100);
+  ASSERT_EQ(tiles.size(), 1U);
+  EXPECT_EQ(tiles[0].column, 64U);
+  EXPECT_EQ(tiles[0].row, 0U);
+}
+
 // A few at a time, each once, whatever changes again meanwhile.
 TEST(HeightTiles, TheyAreTakenByTurns) {
   HeightField field = HeightField::Of(kTiledBlock).value();

@@ -188,6 +188,19 @@ TEST(MillingTies, TheFirstCellsOfATargetAreTheirOwnNeighbours) {
   }
 }
 
+// The same depth again is none that is deeper, though from 0.1 mm down to -0.3 the last digit says
+// so.
+TEST(MillingTies, AReachThatComesAgainIsTheFirst) {
+  Milling milling = TiedBlock();
+  milling.stock.bottom = -5.0;
+  milling.stock.top = 0.0;
+  TiedMilling mill(milling);
+  mill.Go({2, 6, -0.3}, {18, 6, -0.3}, 8.0);
+  mill.Go({10, 9, 0.1}, {10, 9, -0.3}, 8.0, MotionUse::kPlunge);
+  EXPECT_EQ(mill.Figures().reach_mm, 0.3);
+  EXPECT_EQ(mill.Figures().reach_place.step, 1);
+}
+
 // One cell that is compared is all of what is compared.
 TEST(MillingTies, ATargetOfOneCell) {
   constexpr Stock block{.x_max = 2.0, .y_max = 2.0, .bottom = -2.0, .top = 0.0, .cell = 1.0};

@@ -83,6 +83,16 @@ TEST_F(ProgramStreamTest, ALongOneIsReadOn) {
   EXPECT_EQ(waits_, 0);
 }
 
+// Whoever asks for one byte more gets one part of it more, of 16 KiB.
+TEST_F(ProgramStreamTest, ItIsReadOnInParts) {
+  constexpr std::size_t kPart = 16'384;
+  ProgramStream::Opened opened = Open(File(Numbered(200'000)));
+  for (std::size_t parts = 1; parts <= 3; ++parts) {
+    opened.bytes.ReadOn(opened.bytes->size() + 1);
+    EXPECT_EQ(opened.bytes->size(), ProgramStream::kBeginning + parts * kPart);
+  }
+}
+
 // What comes from a pipe is there before the rest of it is written.
 TEST_F(ProgramStreamTest, APipeIsWaitedFor) {
   const std::string path = folder_ + "/pipe";

@@ -42,6 +42,28 @@ TEST_F(LiveHostOrders, AKeyWaitsNoLongerThanItsPatience) {
   EXPECT_FALSE(Ask(PanelKey("COVER", 2)).has_refusal());
 }
 
+// A key that waits when its line goes is forgotten, though it was the first order of that line: a
+// line that comes behind it is not answered for it, and its number in the row is free.
+TEST_F(LiveHostOrders, AKeyThatWaitsGoesWithItsLine) {
+  Live();
+  number_ = 100;
+  TakeControl();
+  v1::HostResponse first;
+  *first.mutable_order() = PanelKey("COVER", 2);
+  first.mutable_order()->set_number(1);
+  first.mutable_order()->set_caller("anna");
+  server_->Tell(first);
+  AskWhereItIs();  // it was taken before
+  server_->EndLine();
+  server_->Told(v1::HostRequest::kHello, 2);
+  for (const std::int64_t sequence : {1, 2, 3}) {
+    const v1::HostOrderAnswer answer = Ask(PanelKey("COVER", sequence));
+    EXPECT_FALSE(answer.has_refusal()) << answer.refusal().message();
+  }
+  for (const v1::HostRequest& told : server_->Told(v1::HostRequest::kAnswer, 0))
+    EXPECT_NE(told.answer().number(), 1);
+}
+
 // LIVE-2.13: a key that the panel does not have is refused by its name, be it empty.
 TEST_F(LiveHostOrders, AKeyThatThePanelDoesNotHave) {
   Live();

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "server/base/names.h"
 #include "tests/server/jobs/dispatcher_bed.h"
 
@@ -27,6 +29,19 @@ TEST(DispatcherJoin, RefusesWrongTokensAndOtherVersions) {
   EXPECT_EQ(CodeOf(joined), ErrorCode::kCellVersionMismatch);
   EXPECT_THAT(joined.error().detail, testing::HasSubstr("0.0.0"));
   EXPECT_EQ(bed.dispatcher().workers(), 0);
+}
+
+// Who asks for its number knows by 0 that it has not joined.
+TEST(DispatcherJoin, EachHasANumberOfItsOwnAboveZero) {
+  DispatcherBed bed;
+  std::set<Dispatcher::WorkerId> known;
+  for (const char* name : {"a", "b", "c"}) {
+    const Dispatcher::WorkerId joined =
+        Must(bed.dispatcher().Join(std::make_shared<FakeLine>(), Hello(name)));
+    EXPECT_GT(joined, 0) << name;
+    EXPECT_TRUE(known.insert(joined).second) << name;
+  }
+  for (const Dispatcher::WorkerId joined : known) bed.dispatcher().Leave(joined);
 }
 
 TEST(DispatcherJoin, WelcomesAndCountsWorkers) {

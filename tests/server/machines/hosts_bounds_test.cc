@@ -222,7 +222,8 @@ TEST_F(HostsBounds, OnlyWhatIsInItsMemoryIsSent) {
 // event.
 TEST_F(HostsBounds, WhatWasStoredBeforeItJoinedIsSentOnce) {
   Must(bed.store().PutPrograms("mill-1", {{.slot = 5, .object = "PA;"}}, {}, "anna"));
-  Settle();
+  const std::int64_t stored = Must(bed.store().LastPosition());
+  ASSERT_TRUE(Eventually([&] { return feed.position() == stored; }));
   const auto link = Joined();
   EXPECT_EQ(link->Newest(v1::HostResponse::kMemory)->memory().programs_size(), 1);
   hosts.Receive(*link, Entries(Fence(*link), 1, true));

@@ -88,12 +88,14 @@ class ProductsOfLater : public testing::Test {
   }
   RunProducts& products() {
     if (products_ == nullptr)
-      products_ = std::make_unique<RunProducts>(RunProducts::Needs{.store = store_,
-                                                                   .hosts = hosts_,
-                                                                   .program = program_,
-                                                                   .folder = runs_,
-                                                                   .log_level = "warning",
-                                                                   .log_format = "json"});
+      products_ =
+          std::make_unique<RunProducts>(RunProducts::Needs{.store = store_,
+                                                           .hosts = hosts_,
+                                                           .program = program_,
+                                                           .folder = runs_,
+                                                           .log_level = "warning",
+                                                           .log_format = "json",
+                                                           .looked_at_again_after = again_after_});
     return *products_;
   }
   // The host of the mill.
@@ -138,6 +140,7 @@ class ProductsOfLater : public testing::Test {
     return static_cast<bool>(bed_.store().GetArtifact(job, "report"));
   }
 
+  std::chrono::milliseconds again_after_ = std::chrono::hours(1);
   ServerBed bed_;
   NotingStore store_{bed_.store()};
   EventFeed feed_{bed_.store()};
@@ -209,6 +212,7 @@ TEST_F(ProductsOfLater, ARecordingThatIsNotWholeIsNotPlayed) {
 
 // Where the store could not say it nobody has to ask again: it is looked at a while later.
 TEST_F(ProductsOfLater, WhatCouldNotBeMadeIsMadeLater) {
+  again_after_ = std::chrono::milliseconds(50);
   const std::int64_t job = Over();
   Record(job);
   store_.lists_fail = true;

@@ -1,10 +1,12 @@
 // What a mill leaves of its block, as it is milled and afterwards: job.proto, StreamJobHeights.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
 
 #include "engine/simulation/material/height_tiles.h"
 #include "server/base/names.h"
+#include "server/services/followed_job.h"
 #include "tests/server/services/stream_bed.h"
 
 namespace rmlcell::server {
@@ -111,6 +113,18 @@ TEST_F(HeightsFollow, ABlockThatComesLaterIsFound) {
   room.Finish(lease);
   running->End(true);
   stream.ExpectGoodEnd();
+}
+
+// Whoever waits looks now and then, and not all the time: besides what is told of the job, which is
+// that it was submitted, at most once in each such time, however slow the computer is.
+TEST_F(HeightsFollow, WhoWaitsLooksNowAndThen) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto stream = Follow(room.Submit(Mills()));
+  ASSERT_TRUE(Eventually([&] { return room.heights_looked_for > 0; }));
+  for (int other = 0; other < 100; ++other) room.Submit(Mills());
+  const int looked = room.heights_looked_for;
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(looked, 3 + took / FollowedJob<RunningHeights>::kBegunLookedForAfter);
 }
 
 // A block that is milled faster than it is looked at: a message has a few, and none is missing.

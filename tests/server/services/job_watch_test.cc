@@ -208,6 +208,23 @@ TEST_F(JobWatchTest, PositionsAreLeftOutWhereOnlyEventsAreWanted) {
   watch.ExpectGoodEnd();
 }
 
+// What it has read it tells, of a job that is deleted meanwhile, too: 64 events, which is all that
+// a watch ever holds. A client that does not read lets it read no more.
+TEST_F(JobWatchTest, OfAJobThatIsDeletedItTellsWhatItHas) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  room.Say(lease, std::vector<std::string>(100, std::string(10'000, 'x')));
+  room.Finish(lease);
+  auto watch = room.Watch(job);
+  EXPECT_EQ(NextOf(watch), "snapshot");
+  EXPECT_EQ(NextOf(watch), "1 state");
+  ASSERT_TRUE(room.bed.store().DeleteJob(job, "anna"));
+  ASSERT_TRUE(
+      Eventually([&] { return room.feed.position() == Must(room.bed.store().LastPosition()); }));
+  EXPECT_EQ(watch.Rest().size(), 63U);
+  watch.ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E");
+}
+
 TEST_F(JobWatchTest, AServerThatStopsSaysWhereToGoOn) {
   const std::int64_t job = room.Submit();
   room.Say(room.bed.Lease(), {"a", "b"});

@@ -2,6 +2,7 @@
 #include <google/rpc/error_details.pb.h>
 #include <google/rpc/status.pb.h>
 
+#include <atomic>
 #include <future>
 
 #include "tests/server/services/live_machines_bed.h"
@@ -282,6 +283,30 @@ TEST_F(LiveJobs, WhatComesOfAnOrderIsToldAsItIs) {
   host->LeaveOnOrder();
   Call(jobs, &v1::JobService::Stub::HoldJob, request);
   ExpectRefused(grpc::StatusCode::UNAVAILABLE, "its host is not heard of any more");
+}
+
+// Of many at once nobody reads why each waits: that is worked out for one that comes alone.
+TEST_F(LiveJobs, WhyItWaitsIsToldOfOneThatComesAlone) {
+  std::atomic<int> told = 0;
+  book.OnToldToWait([&told](v1::Job&) { ++told; });
+  v1::SubmitJobsRequest request;
+  request.set_number(1);
+  v1::Job& job = *request.mutable_submission()->mutable_job();
+  job.set_kind(v1::JOB_KIND_RUN);
+  job.set_machine(kLaser);
+  job.mutable_inline_program()->set_file_name("a.S");
+  job.mutable_inline_program()->set_content("STOP\n");
+  const auto context = Context();
+  const auto stream = jobs->SubmitJobs(context.get());
+  v1::SubmitJobsResponse response;
+  ASSERT_TRUE(stream->Write(request) && stream->Read(&response));
+  EXPECT_NE(response.job(), "") << response.ShortDebugString();
+  stream->WritesDone();
+  EXPECT_FALSE(stream->Read(&response));
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_EQ(told, 0);
+  Submit(v1::JOB_KIND_RUN);
+  EXPECT_EQ(told, 1);
 }
 
 TEST_F(LiveJobs, WhoMayNotSubmitSubmitsNothing) {

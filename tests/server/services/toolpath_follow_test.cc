@@ -1,11 +1,13 @@
 // The toolpath of a job that is not over: job.proto, StreamJobToolpathRequest.follow.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
 #include <vector>
 
 #include "proto/bridge/framing.h"
 #include "server/base/names.h"
+#include "server/services/followed_job.h"
 #include "tests/server/services/stream_bed.h"
 
 namespace rmlcell::server {
@@ -118,6 +120,18 @@ TEST_F(ToolpathFollowTest, AJobThatWaitsIsFollowedWhenItBegins) {
   running->End(true);
   EXPECT_TRUE(stream.Next().header().complete());
   stream.ExpectGoodEnd();
+}
+
+// Whoever waits looks now and then, and not all the time: besides what is told of the job, which is
+// that it was submitted, at most once in each such time, however slow the computer is.
+TEST_F(ToolpathFollowTest, WhoWaitsLooksNowAndThen) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto stream = Follow(room.Submit(Simulation()));
+  ASSERT_TRUE(Eventually([&] { return room.toolpaths_looked_for > 0; }));
+  for (int other = 0; other < 100; ++other) room.Submit(Simulation());
+  const int looked = room.toolpaths_looked_for;
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(looked, 3 + took / FollowedJob<RunningToolpath>::kBegunLookedForAfter);
 }
 
 // Of a job that another server has nothing is heard before its end.

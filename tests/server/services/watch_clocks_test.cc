@@ -50,11 +50,16 @@ class WatchClocks : public testing::Test {
       grpc::ByteBuffer bytes(*request);
       EXPECT_TRUE(
           grpc::SerializationTraits<v1::WatchCellRequest>::Deserialize(&bytes, &asked).ok());
-      return MakeCellWatch(needs_, asked, "local")->Begin();
+      auto made = MakeCellWatch(needs_, asked, "local");
+      if (keeps) kept_ = made;
+      return made->Begin();
     }
+
+    std::atomic<bool> keeps = false;  // the newest, beyond its end
 
    private:
     const CellWatchNeeds needs_;
+    std::shared_ptr<PullStream<grpc::ByteBuffer>> kept_;
   };
   class Machines final : public v1::MachineService::CallbackService {
    public:
@@ -122,6 +127,7 @@ class WatchClocks : public testing::Test {
     room.feed.Publish(kMill, status.SerializeAsString());
     EXPECT_TRUE(Eventually([&] { return room.feed.version() > before; }));
   }
+  void KeepWatches() { cell_.keeps = true; }
   static std::string WordOf(const v1::WatchCellResponse& message) {
     if (message.has_progress()) return "at " + std::to_string(message.progress().steps());
     if (message.has_event()) return message.event().job().message().text();
@@ -228,6 +234,18 @@ TEST_F(WatchClocks, ABookmarkComesWhenItsTimeHasCome) {
   room.Say(lease, {"d"});
   EXPECT_EQ(WordOf(watch.Next()), "bookmark");
   EXPECT_EQ(WordOf(watch.Next()), "d");
+}
+
+// Nobody can change it any more, also where somebody still has the stream.
+TEST_F(WatchClocks, AWatchThatIsOverIsUnknown) {
+  KeepWatches();
+  auto watch = WatchJobs(0.0);
+  v1::UpdateWatchRequest change;
+  change.set_watch_id(watch.Next().watch_id());
+  ASSERT_TRUE(room.registry.Change(change, "local"));
+  watch.Cancel();
+  EXPECT_TRUE(Eventually(
+      [&] { return CodeOf(room.registry.Change(change, "local")) == ErrorCode::kCellNotFound; }));
 }
 
 // MachineService.WatchMachine: once a second the newest status, and the first one counts.

@@ -82,7 +82,7 @@ class ToldCall final : public grpc::ServerGenericBidiReactor {
   }
   void End() { EndWith(grpc::Status::OK); }
   void OnCancel() override { EndWith(grpc::Status::CANCELLED); }
-  void OnDone() override { delete this; }
+  void OnDone() override {}  // it stays, for whoever ends it once more
 
  private:
   void EndWith(const grpc::Status& status) {
@@ -93,15 +93,17 @@ class ToldCall final : public grpc::ServerGenericBidiReactor {
   std::atomic<bool> ended_ = false;
 };
 
-// One call only.
+// One call only; it stays as long as this does.
 class ToldCalls final : public grpc::CallbackGenericService {
  public:
   grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext*) override {
-    auto* call = new ToldCall();
-    begun.set_value(call);
-    return call;
+    begun.set_value(&call_);
+    return &call_;
   }
   std::promise<ToldCall*> begun;
+
+ private:
+  ToldCall call_;
 };
 
 class KeptReader final : public ResourceReader {

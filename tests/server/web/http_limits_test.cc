@@ -298,6 +298,20 @@ TEST(HttpRefusals, WhoeverIsOneTooManyIsTold) {
   }
 }
 
+// A hundred of them are waited for, each until it goes; the next one is told at once and left.
+TEST(HttpRefusals, AHundredAreWaitedFor) {
+  WebOptions options = AnyPort();
+  options.connections_max = 10;
+  options.read_timeout = std::chrono::hours(1);
+  options.linger_timeout = std::chrono::hours(1);
+  FakeCell cell(options);
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 111; ++i) clients.push_back(std::make_unique<RawClient>(cell.port()));
+  for (std::size_t i = 10; i < clients.size(); ++i)
+    ASSERT_EQ(ErrorOf(clients[i]->Read()), "503 CELL-E9020") << i;
+  EXPECT_EQ(cell.web().connections(), 110U);
+}
+
 // Left unread, a request that is there already would have the system break the connection, which a
 // client may see before its answer. It is there when its client came while the only thread was
 // busy.

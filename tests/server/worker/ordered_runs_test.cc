@@ -186,7 +186,7 @@ TEST_F(OrderedRuns, WhatHappensIsToldOnTheWay) {
         server.Send(Order(v1::WorkerControl::KIND_CANCEL));
     }
   };
-  Work(Paced("OL[20]=ON\nDELAY 100\n", 20.0));
+  Work(Paced("OL[20]=ON\nDELAY 100\n", 1.0));
   EXPECT_TRUE(ordered);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
 }

@@ -125,6 +125,17 @@ TEST(RideWays, TheWayDownToTheEndsOfMotions) {
   EXPECT_NEAR(motions[0].duration_s() + motions[1].duration_s(), Ramp_s(25.0) + 0.125 / 25.0, 1e-6);
 }
 
+// motion.md 6: nor is there one over a motion that is no way at all.
+TEST(RideWays, AMotionWithoutAWay) {
+  LeadAlong way(Straight(1.0), {.s = 0.25, .speed = 50.0});
+  way.Add(Straight(0.5 * motion::kTipLengthZero_mm));
+  way.Add(Straight(2.0));
+  const std::optional<LeadAlong::End> end = way.EndOnLast(25.0);
+  ASSERT_TRUE(end.has_value());
+  EXPECT_NEAR(end->s, 1.125, 1e-9);
+  EXPECT_TRUE(way.MotionsTo(*end, Axes()).empty());
+}
+
 // motion.md 6: the weakest motion sets the ramp: by a jerk of 10,000 mm/s3, or by 500 mm/s2, it is
 // so much longer.
 TEST(RideWays, TheWeakestMotionSetsTheRamp) {

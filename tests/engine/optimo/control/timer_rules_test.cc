@@ -151,6 +151,15 @@ TEST(TimerRules, OneReadOfALoopIsCounted) {
   EXPECT_NEAR(time(before, one, 2010), 11 * 0.048, 1e-9);
 }
 
+// OPT-7.97: the more inputs a loop reads, the longer it takes until one of them is counted: of 2100
+// the first is not met again within a thousand others, nor the 1001st within two thousand; the
+// 901st of the second turn is, and has its own thousand from there.
+TEST(TimerRules, OneReadOfALongLoopIsCounted) {
+  std::string text = "10 VI[2]=VI[2]+1\n";
+  for (int n = 0; n < 2100; ++n) text += "VL[1]=IL[16]\n";
+  EXPECT_EQ(RunText(text + "IF VI[2] < 1001 THEN 10\n20 VI[3]=1\n").time_s, 0.0);
+}
+
 // OPT-2.49: the program runs ahead of a passage by ten thousand instructions; one more, and the
 // passage becomes a stop.
 TEST(TimerRules, HowFarAProgramRunsAhead) {

@@ -104,6 +104,26 @@ TEST(FlowField, ModesAreThoseOfTheSamePath) {
   EXPECT_FALSE(start.IsContour());
 }
 
+// OPT-2.12: a subroutine that sets PATH on one of its ways.
+TEST(FlowField, ModesMayBeAsBefore) {
+  Modes maybe = Modes::Kept();
+  Modes set = Modes::Kept();
+  set.SetPath(PathType::kLin);
+  maybe.Join(set);
+  Modes start = Modes::AtStart();
+  start.Then(maybe);
+  EXPECT_TRUE(start.MayBe(PathType::kLin));
+  EXPECT_FALSE(start.path());
+  EXPECT_TRUE(start.IsDefaultCoord());
+  Modes straight = Modes::AtStart();
+  straight.SetPath(PathType::kLin);
+  straight.Then(maybe);
+  EXPECT_EQ(straight.path(), PathType::kLin);
+  Modes twice = maybe;
+  twice.Then(maybe);
+  EXPECT_EQ(twice, maybe);
+}
+
 // OPT-2.12
 TEST(FlowField, ModesKnowTheirContours) {
   for (const PathType path : {PathType::kPtp, PathType::kLin, PathType::kCir, PathType::kHole}) {

@@ -80,6 +80,20 @@ TEST(FlowFromTheFirst, AReturnStopsWhereItsGosubGoesOn) {
   EXPECT_EQ(told("", "OPT-2.48"), 0);
 }
 
+// OPT-2.47, OPT-2.48: it may go on where one way does, whatever the other one comes to.
+TEST(FlowFromTheFirst, AMoveOnOneWayGoesOn) {
+  const auto told = [](const std::string& one, const std::string& other) {
+    const std::string text = kLines + "MOVE (9.,0.,0.,0.,0.)/FLY\nIF VL[1] THEN 10\n" + one +
+                             "ENDTASK\n10 ACCEL 5\n" + other;
+    return TimesSaid(text, 7032, "OPT-2.47") + TimesSaid(text, 7032, "OPT-2.48");
+  };
+  const std::string goes = "MOVE (20.,0.,0.,0.,0.)\n", stops = "DELAY 1\n";
+  EXPECT_EQ(told(goes, stops), 0);
+  EXPECT_EQ(told(stops, goes), 0);
+  EXPECT_EQ(told(goes, ""), 0);
+  EXPECT_EQ(told(stops, stops), 1);
+}
+
 // OPT-7.20, OPT-B.22: a subroutine of one instruction changes nothing.
 TEST(FlowFromTheFirst, ASubroutineMayBeItsReturnAlone) {
   const std::string move = "MOVE (9.,0.,0.,0.,0.)\nENDTASK\n900 RETURN\n";

@@ -42,6 +42,23 @@ TEST(ObjectLimits, IgnoredLines) {
   EXPECT_EQ(all.diagnostics[0].step, kMost + 1);
 }
 
+// OPT-E.7023: that a line has no effect is told of the one that there is no room for, too, by its
+// word.
+TEST(ObjectLimits, AnIgnoredLineWithoutRoom) {
+  const Compilation all = Compile("CONT X\nEXTERN Y\n" + Repeated("CONT X\n", kMost - 1), "",
+                                  {.object_limit = 0, .advice = false, .diagnostics_max = 200'000});
+  const auto told = [&](int line) {
+    std::string found;
+    for (const Diagnostic& one : all.diagnostics) {
+      if (one.where.line == line && one.code == ErrorCode::kWordIgnored) found += one.detail;
+    }
+    return found;
+  };
+  EXPECT_EQ(told(2), "EXTERN has no effect");
+  EXPECT_EQ(told(kMost), "CONT has no effect");
+  EXPECT_EQ(told(kMost + 1), "CONT has no effect");
+}
+
 // OPT-B.69, OPT-E.7031: told once.
 TEST(ObjectLimits, Names) {
   const auto names = [](int count) {
@@ -61,9 +78,17 @@ TEST(ObjectLimits, Names) {
   // None of those behind is taken for another one that is declared.
   EXPECT_EQ(std::ranges::count(more.diagnostics, ErrorCode::kNameDuplicate, &Diagnostic::code), 0);
   // Nor is it told where a name without room is used.
-  const Compilation used = CompileLong(names(kMost + 1) + "N65535 = 5.\nVR[2] = N65535\n");
+  const Compilation used = CompileLong(names(kMost + 1) +
+                                       "DECLARE N0 = VR[1]\nN65535 = 5.\n"
+                                       "VR[2] = N65535\n");
   EXPECT_EQ(std::ranges::count(used.diagnostics, ErrorCode::kObjectTooLong, &Diagnostic::code), 1);
   EXPECT_EQ(std::ranges::count(used.diagnostics, ErrorCode::kNameUndeclared, &Diagnostic::code), 0);
+  // OPT-7.49: what stands behind them is told as ever.
+  EXPECT_EQ(std::ranges::count(used.diagnostics, ErrorCode::kNameDuplicate, &Diagnostic::code), 1);
+  // OPT-7.91: a mistyped DECLARE of what is no name takes none.
+  const Compilation mistyped = CompileLong(names(kMost) + "DECLRE 5 = 3\n");
+  ASSERT_EQ(mistyped.diagnostics.size(), 1U);
+  EXPECT_EQ(mistyped.diagnostics[0].code, ErrorCode::kNameUndeclared);
 }
 
 // OPT-7.17, OPT-B.69: the table of a computed GOTO, as long as an object within OBJECT_LIMIT can

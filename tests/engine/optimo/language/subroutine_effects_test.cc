@@ -163,6 +163,19 @@ TEST(SubroutineEffects, KnowWhoNeverReturns) {
   EXPECT_EQ(program.At(20), nullptr);
 }
 
+// What stands outside of all subroutines is not looked at for them, however much that is.
+TEST(SubroutineEffects, OnlySubroutinesAreLookedAt) {
+  const auto work = [](int outside) {
+    std::string text;
+    for (int n = 0; n < outside; ++n) text += "SPEED 5\n";
+    const Followed program(text + "GOSUB 10\n" + text + "GOSUB 10\nENDTASK\n10 RETURN\n");
+    EXPECT_NE(program.At(10), nullptr);
+    return program.effects.work();
+  };
+  EXPECT_EQ(work(0), 1U);
+  EXPECT_EQ(work(500), 1U);
+}
+
 // OPT-7.21: chains of GOSUBs are followed in one go, whichever way they lead, and also where each
 // subroutine runs on into the next.
 TEST(SubroutineEffects, WorkIsLinear) {

@@ -89,6 +89,22 @@ TEST(WaysThatDisagree, AboutAShortMove) {
   EXPECT_EQ(TimesTold(near + "IF VL[1] THEN 10\nGOTO 20\n10 " + far + "20 " + last, words), 0);
 }
 
+// OPT-3.58, OPT-3.20, OPT-B.59: an error handler begins with the beam off. Where other ways lead
+// there as well, on which it is on or was just switched off, a TIMER whose GOSUB may switch it off
+// leaves it one of these three: switched on again, it may have pierced before.
+TEST(WaysThatDisagree, WithAnErrorHandler) {
+  const auto times = [](const std::string& still_on) {
+    return TimesTold("COORD ABSOL\nPATH LIN\nSPEED 10\nERR 900\nWORK 0,0/ON\nDELAY 1\n" + still_on +
+                         "WORK 0,0/OFF\n900 TIMER /DIS\nCOORD ABSOL\nPATH LIN\nWORK 0,0/ON\n" +
+                         kMove +
+                         "WORK 0,0/OFF\nTIMER (5.,800)\nENDTASK\n"
+                         "800 IF VL[3] THEN 810\nWORK 0,0/OFF\n810 RETURN\n",
+                     "switched on without a dwell");
+  };
+  EXPECT_EQ(times("IF VL[2] THEN 900\n"), 0);
+  EXPECT_EQ(times(""), 1);
+}
+
 // OPT-5.46: what comes back along the text holds from there on, beyond the next number, too.
 TEST(WaysThatDisagree, WithTheOneThatLeadsBack) {
   const auto times = [](const std::string& again) {
