@@ -291,7 +291,8 @@ int ShowBegun(const Remote& remote, const MachineAct& act, const v1::MachineStat
     if (auto now = StatusNow(remote, act.machine)) status = *std::move(now);
   }
   const int shown = ShowOwn(remote, status);
-  const bool failed = !status.has_run() && status.last_run().run() == begun.run().run() &&
+  const std::int64_t run = begun.has_run() ? begun.run().run() : begun.last_run().run();
+  const bool failed = !status.has_run() && status.last_run().run() == run &&
                       status.last_run().outcome().kind() == v1::Outcome::KIND_FAILED;
   return shown == kGood && failed ? kProgramErrors : shown;
 }
@@ -312,6 +313,7 @@ int ArmAndStart(const Remote& remote, const MachineAct& act, v1::StartMachineReq
   const Control control(remote, act);
   if (!control.status().ok()) return Refused(control.status(), remote);
   arm.set_control_token(control.token());
+  const auto before = StatusNow(remote, act.machine);
   v1::ArmMachineResponse armed;
   grpc::Status status = Call(remote, &Service::Stub::ArmMachine, arm, armed);
   if (!status.ok()) return Refused(status, remote);
@@ -319,7 +321,12 @@ int ArmAndStart(const Remote& remote, const MachineAct& act, v1::StartMachineReq
   start.set_arm_token(armed.arm_token());
   v1::MachineStatus begun;
   status = Call(remote, &Service::Stub::StartMachine, start, begun);
-  return status.ok() ? ShowBegun(remote, act, begun) : Refused(status, remote);
+  if (status.ok()) return ShowBegun(remote, act, begun);
+  // The queue begins what a machine is armed for: it may have been so quick that the run is over.
+  const auto now = StatusNow(remote, act.machine);
+  const bool ran = before && now && now->last_run().job() == start.job() &&
+                   now->last_run().run() != before->last_run().run();
+  return ran ? ShowBegun(remote, act, *now) : Refused(status, remote);
 }
 
 }  // namespace

@@ -111,7 +111,9 @@ class Options(InFolder):
         self.assertEqual(ask("explain", "NOTHING").returncode, 2)
 
     def test_what_cannot_be_written_is_told(self):
-        for words in (["explain", "348"], ["explain"]):
+        # A picture leaves in one piece: nothing of it is left to be written at the end.
+        stream = self.file("a.rml", "PA;!PZ-10,10;PU0,0;" + "".join(f"PD{k},{k % 7 * 50};" for k in range(0, 5000, 10)) + "PU;")
+        for words in (["explain", "348"], ["explain"], ["simulate", stream, "--svg", "-"]):
             with open("/dev/full", "w", encoding="ascii") as full:
                 done = subprocess.run([BIN / "rmlcell", *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
             self.assertEqual((done.returncode, done.stderr), (2, "rmlcell: standard output could not be written\n"))

@@ -274,7 +274,8 @@ TEST_F(StartVerbTest, SeenArmsTheMachineForItsJob) {
   machine_.armed.set_arm_token("armed");
   Run().set_job("jobs/17");
   ExpectDone("start m --job 17 --seen tool,clamps",
-             WithControlFor("ArmMachine machine: \"machines/m\" control_token: \"t\" "
+             WithControlFor("GetMachine name: \"machines/m\"\n"
+                            "ArmMachine machine: \"machines/m\" control_token: \"t\" "
                             "job: \"jobs/17\" confirmations: CONFIRMATION_TOOL "
                             "confirmations: CONFIRMATION_CLAMPS on_loss: ON_LOSS_GO_ON\n" +
                             Started(" job: \"jobs/17\" arm_token: \"armed\"")));
@@ -283,6 +284,30 @@ TEST_F(StartVerbTest, SeenArmsTheMachineForItsJob) {
   EXPECT_EQ(told.exit_code, kConnection);
   EXPECT_EQ(told.errors, "rmlcell: not here\n");
   EXPECT_THAT(Calls(), Not(HasSubstr("StartMachine")));
+}
+
+// The queue begins what a machine is armed for, and may be quicker than the command: a run that is
+// over since then is that of the command, with its end; an older one is not.
+TEST_F(StartVerbTest, WhatTheQueueHasRunMeanwhileHasRun) {
+  machine_.armed.set_arm_token("armed");
+  machine_.refused["StartMachine"] = {grpc::StatusCode::FAILED_PRECONDITION, "it waits no more"};
+  v1::MachineStatus over;
+  over.mutable_last_run()->set_run(2);
+  over.mutable_last_run()->set_job("jobs/17");
+  machine_.statuses = {v1::MachineStatus(), over};
+  Told told = Say("start m --job 17 --seen tool");
+  EXPECT_EQ(told.exit_code, kGood) << told.errors;
+  EXPECT_EQ(told.errors, "");
+  over.mutable_last_run()->mutable_outcome()->set_kind(v1::Outcome::KIND_FAILED);
+  machine_.statuses = {v1::MachineStatus(), over};
+  EXPECT_EQ(Say("start m --job 17 --seen tool").exit_code, kProgramErrors);
+  machine_.statuses = {over, over};
+  told = Say("start m --job 17 --seen tool");
+  EXPECT_EQ(told.exit_code, kConnection);
+  EXPECT_EQ(told.errors, "rmlcell: it waits no more\n");
+  over.mutable_last_run()->set_job("jobs/18");
+  machine_.statuses = {v1::MachineStatus(), over};
+  EXPECT_EQ(Say("start m --job 17 --seen tool").exit_code, kConnection);
 }
 
 // Until its time has begun: what fails at once does so behind the answer.

@@ -49,6 +49,47 @@ TEST_F(ToldRuns, WhatOnlyTheRunFindsIsTold) {
   EXPECT_THAT(told.output, HasSubstr("\nprogram 7:2: error OPT-E7201: "));
 }
 
+// Nothing runs, and whoever asked for facts, JSON or a text has a verdict all the same.
+TEST_F(ToldRuns, AProgramThatCannotRunHasItsVerdict) {
+  SimulateOptions options = Of("12.S", "SPEED 101\n");
+  options.machine.profile = "efa-51";
+  options.facts = true;
+  const Told facts = Run(options);
+  EXPECT_EQ(facts.exit_code, 1);
+  for (const char* line :
+       {"family: optimo\n", "\nprofile: efa-51\n", "\nprofile_named: yes\n", "\noutcome: failed\n",
+        "\noutcome_code: OPT-E7004\n", "\nverdict: BAD\n", "\nverdict_codes: OPT-E7004\n"})
+    EXPECT_THAT(facts.output, HasSubstr(line));
+  options.facts = false;
+  options.json = true;
+  const Told json = Run(options);
+  EXPECT_EQ(json.exit_code, 1);
+  const auto found = nlohmann::json::parse(json.output, nullptr, false);
+  EXPECT_EQ(found["family"], "optimo");
+  EXPECT_EQ(found["profile"], "efa-51");
+  EXPECT_EQ(found["verdict"], "VERDICT_BAD");
+  EXPECT_EQ(found["diagnostics"][0]["code"], "OPT-E7004");
+  // Of one program the line is shown with what is wrong in it.
+  options.json = false;
+  EXPECT_THAT(Run(options).output, HasSubstr("SPEED 101\n"));
+}
+
+// What the text counts of a kind, past the thousand that are kept, the run finds again and does not
+// tell again.
+TEST_F(ToldRuns, WhatIsOnlyCountedIsToldOnce) {
+  std::string stream = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;\n";
+  for (int line = 0; line < 1010; ++line) stream += "PU1,1;PU2,2;PU3,3;QQ;\n";
+  SimulateOptions options = Of("a.rml", stream + "PD30000,100;\nPD30000,200;PU0,0;!MC0;\n");
+  options.machine.profile = "srm-20";
+  const Told told = Run(options);
+  EXPECT_EQ(told.exit_code, 1);
+  const std::string counted = " (2 times, lines 1012 to 1013)\n";
+  const std::size_t first = told.output.find(counted);
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(told.output.find(counted, first + 1), std::string::npos);
+  EXPECT_THAT(told.output, Not(HasSubstr(" more finding")));
+}
+
 // Slices of ten seconds; every sixteenth is told, with one decimal.
 TEST_F(ToldRuns, ALongRunSaysHowFarItIs) {
   const SimulateOptions options = Of("a.S", "DELAY 99.\nDELAY 99.\n");

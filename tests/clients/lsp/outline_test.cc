@@ -122,6 +122,8 @@ TEST(Folding, ASubroutineBeginsWithANumberOfAGosub) {
   EXPECT_EQ(FoldsOf("GOSUB 100\nENDTASK\n100 SPEED 5\n110 SPEED 6\nRETURN\n"),
             Strings{"region 2-4"});
   EXPECT_EQ(FoldsOf("GOTO 90\n90 SPEED 5\nRETURN\n"), Strings{});
+  // 0 is a number as others are, and statements without one do not have it.
+  EXPECT_EQ(FoldsOf("GOSUB 0\nENDTASK\n0 SPEED 5\nSPEED 6\nRETURN\n"), Strings{"region 2-4"});
 }
 
 }  // namespace

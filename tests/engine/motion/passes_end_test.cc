@@ -30,5 +30,27 @@ TEST(SpeedPasses, AcceptedToTheEndTheyEndAtRest) {
   }
 }
 
+// Where nothing is open there is nothing to find: neither in a chain without knots nor behind one
+// that was final before the others were dropped, which keeps its speed.
+TEST(SpeedPasses, SettlingWhatIsFinalChangesNothing) {
+  constexpr PathLimits kOne{300.0, 2000.0, 40000.0};
+  SpeedPasses passes;
+  EXPECT_EQ(passes.Settle(), 0U);
+  passes.Push(500.0, kOne, 40.0);
+  passes.Push(500.0, kOne, 200.0);
+  ASSERT_EQ(passes.Settle(), 1U);
+  passes.DropOpen();
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(passes.Settle(), 1U);
+    EXPECT_EQ(passes.speed(), 40.0);
+  }
+  passes.Push(500.0, kOne, 0.0);
+  ASSERT_EQ(passes.Settle(), 2U);
+  EXPECT_EQ(passes.speed(0), 40.0);
+  passes.Pop();
+  passes.Pop();
+  EXPECT_EQ(passes.Settle(), 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

@@ -139,5 +139,26 @@ TEST(SpeedPasses, AcceptedKnotsAreFinal) {
   EXPECT_EQ(passes.speed(2), speed);
 }
 
+// Between two ramps it goes at exactly the speed of the limits, whatever the phases of the first
+// one add up to.
+TEST(SpeedProfile, ACruiseHasExactlyItsSpeed) {
+  Dice dice(47);
+  int cruises = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const PathLimits limits{dice.Magnitude(1.0, 500.0), dice.Magnitude(50.0, 5000.0),
+                            dice.Magnitude(100.0, 1e6)};
+    const double length = 2.0 * RampLength(0.0, limits.speed, limits) + 10.0;
+    const SpeedProfile p = SpeedProfile::Span(length, 0.0, 0.0, limits);
+    ASSERT_EQ(p.peak_speed(), limits.speed) << round;
+    for (int k = 0; k < p.phase_count(); ++k) {
+      const SpeedProfile::Phase& phase = p.phase(k);
+      if (phase.jerk != 0.0 || phase.start.acceleration != 0.0) continue;
+      ++cruises;
+      ASSERT_EQ(phase.start.speed, limits.speed) << round;
+    }
+  }
+  EXPECT_EQ(cruises, 2000);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

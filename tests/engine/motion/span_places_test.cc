@@ -122,6 +122,21 @@ TEST(SpanPlaces, ACornerWaitsForTheEndOfWhatIsBehindIt) {
   EXPECT_THAT(chain.Dump(), HasSubstr("span 1: moves 2 from 0.000 to 2 at 1.000"));
 }
 
+// But where more is known to be behind it than its curve may take half of, it does not wait for
+// the end of that: of 800 mm of lines at 90 mm/s and more here.
+TEST(SpanPlaces, ACornerWaitsForNoMoreThanItTakes) {
+  SpanStage spans(PlainMachine(), Planner::kWindow);
+  LegStage& legs = spans.leg_stage();
+  std::vector<Line> lines{{kEast * 60.0, 1.0}};
+  for (int k = 0; k < 40; ++k) lines.push_back({kNorth * 20.0, k % 2 == 0 ? 0.9 : 1.0});
+  std::vector<MoveCommand> moves = ChainOf(lines);
+  moves.back().fly = true;
+  for (const MoveCommand& move : moves) legs.Add(move, legs.LimitsFor(move), true);
+  legs.Settle();
+  ASSERT_TRUE(spans.Resolve(false));
+  EXPECT_THAT(spans.Dump(), HasSubstr("span 0: moves 0 from 0.000 to 0 at "));
+}
+
 // A run holds half a window of legs, and the one that it ends with; where the
 // curve before it takes more of them, as many as that takes, 33 here of the 66
 // behind it.

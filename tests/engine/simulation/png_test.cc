@@ -45,5 +45,24 @@ TEST(Png, TellsItsPixelsInAMetreWhereItCan) {
   EXPECT_EQ(PixelsToldOf(-0.1), std::nullopt);
 }
 
+// Whoever takes no byte of a picture is offered the first ones alone, and no row is made.
+TEST(Png, WhatNobodyTakesIsNotMade) {
+  int offered = 0;
+  int rows = 0;
+  const bool written = WritePng(
+      {.width = 2, .height = 3},
+      [&](std::size_t, std::span<std::uint8_t> row) {
+        std::ranges::fill(row, std::uint8_t{0});
+        ++rows;
+      },
+      [&](std::string_view part) {
+        if (!part.empty()) ++offered;
+        return part.empty();
+      });
+  EXPECT_FALSE(written);
+  EXPECT_EQ(offered, 1);
+  EXPECT_EQ(rows, 0);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

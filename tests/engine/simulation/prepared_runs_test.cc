@@ -219,6 +219,33 @@ TEST(CheckedPrograms, FindingsOfTheVerdictAreMarked) {
   }
 }
 
+// How far a check came is told where nothing else says why: an error of the motion speaks for
+// itself, and that of a program that this one calls is told as that. Each code is told once.
+TEST(CheckedPrograms, WhereACheckEndedIsToldOnce) {
+  const auto codes = [](const std::vector<Diagnostic>& findings,
+                        const std::vector<machine::Reason>& reasons, ErrorCode cause) {
+    CheckedProgram check{.family = &LaserFamily(), .slot = 45, .translation = {.ok = true}};
+    check.motion.findings = findings;
+    check.motion.reasons = reasons;
+    check.motion.cut_short[45] = {.cause = cause, .text = "only up to step 3"};
+    const machine::Judgement judgement = JudgeCheck(check);
+    std::vector<ErrorCode> told;
+    for (const machine::Reason& reason : judgement.reasons) told.push_back(reason.code);
+    return told;
+  };
+  using Codes = std::vector<ErrorCode>;
+  const Diagnostic error{.code = ErrorCode::kHoleRadiusZero, .severity = Severity::kCompile};
+  const machine::Reason called{.code = ErrorCode::kHoleRadiusZero,
+                               .verdict = machine::Verdict::kBad};
+  EXPECT_EQ(codes({}, {}, ErrorCode::kCellCheckWaits), Codes{ErrorCode::kCellCheckWaits});
+  EXPECT_EQ(codes({error}, {}, ErrorCode::kCellCheckWaits), Codes{ErrorCode::kHoleRadiusZero});
+  EXPECT_EQ(codes({error}, {called}, ErrorCode::kCellCheckWaits),
+            Codes{ErrorCode::kHoleRadiusZero});
+  EXPECT_EQ(codes({}, {called}, ErrorCode::kHoleRadiusZero), Codes{ErrorCode::kHoleRadiusZero});
+  EXPECT_EQ(codes({}, {called}, ErrorCode::kCellCheckWaits),
+            (Codes{ErrorCode::kHoleRadiusZero, ErrorCode::kCellCheckWaits}));
+}
+
 // What is no RML-1 is refused when it comes; of what is stored already that was said before.
 TEST(CheckedPrograms, AStoredStreamIsNotRefusedAgain) {
   std::string stream;

@@ -326,9 +326,9 @@ struct AskedStl {
 };
 
 // Of one who waits so many times.
-AskedStl StlOfOneWhoWaits(const HeightField& field, int most) {
+AskedStl StlOfOneWhoWaits(const HeightField& field, int most, double tolerance_mm = 0.01) {
   AskedStl made;
-  made.whole = WriteStl(field, 0.01, [&](std::string_view part) {
+  made.whole = WriteStl(field, tolerance_mm, [&](std::string_view part) {
     made.bytes += part.size();
     if (part.empty()) ++made.asked;
     return made.asked <= most;
@@ -360,6 +360,24 @@ TEST(Stl, WhoeverWaitsIsAskedAgainOfASlope) {
   const AskedStl less = StlOfOneWhoWaits(field, 1);
   EXPECT_FALSE(less.whole);
   EXPECT_EQ(less.asked, 2);
+  EXPECT_EQ(less.bytes, 0U);
+}
+
+// Of a bowl no vertex can be left out: 750 x 750 cells have more than a million triangles, and
+// whoever waits is asked once more while they are counted, before the first of them comes.
+TEST(Stl, WhoeverWaitsIsAskedWhileTrianglesAreCounted) {
+  HeightField field =
+      HeightField::Of({.x_max = 750.0, .y_max = 750.0, .bottom = -400.0, .top = 0.0, .cell = 1.0})
+          .value();
+  field.Cut({.shape = MillTool::Shape::kBall, .radius_mm = 1000.0}, {375, 375, -350},
+            {375, 375, -350});
+  const AskedStl whole = StlOfOneWhoWaits(field, 1000, 0.0);
+  EXPECT_TRUE(whole.whole);
+  EXPECT_GT(whole.bytes, 84U + (std::size_t{50} << 20));
+  ASSERT_GE(whole.asked, 1);
+  const AskedStl less = StlOfOneWhoWaits(field, whole.asked - 1, 0.0);
+  EXPECT_FALSE(less.whole);
+  EXPECT_EQ(less.asked, whole.asked);
   EXPECT_EQ(less.bytes, 0U);
 }
 

@@ -205,5 +205,15 @@ TEST(FamilyTools, ANameOfAVariableIsWhole) {
     EXPECT_FALSE(OptimoFamily().HasVariable(Standard(), name)) << name;
 }
 
+// OPT-B.69: what may be rewritten is a text by its name and by its bytes.
+TEST(FamilyTools, TextsMayBeRewritten) {
+  EXPECT_TRUE(Tools().CheckIsText("12.S", "SPEED 20\n"));
+  EXPECT_FALSE(Tools().CheckIsText("12.S", ObjectOf("SPEED 20\n")));
+  const Status object = Tools().CheckIsText("12.O", "SPEED 20\n");
+  ASSERT_FALSE(object);
+  EXPECT_EQ(object.error().code, ErrorCode::kCellBadText);
+  EXPECT_EQ(object.error().detail, "12.O is an object, not a source");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::family_tools

@@ -108,6 +108,28 @@ TEST(RunHalts, ABreakpointAtAWaitingInstruction) {
   EXPECT_EQ(move.Value("VI[1]"), "0");
 }
 
+// One that is set at an instruction under way has its condition as any other.
+TEST(RunHalts, ALateBreakpointHasItsCondition) {
+  for (const auto& [before, phase] :
+       {std::pair{"VI[5]=0\n", RunPhase::kFinished}, std::pair{"VI[5]=1\n", RunPhase::kHalted}}) {
+    Halted one(std::string(before) + "DELAY 1\nVI[1]=1\n");
+    one.run->Advance(At(0.5));
+    one.run->SetBreakpoints({{.at = {1, 2}, .condition = "VI[5] > 0"}});
+    EXPECT_EQ(one.run->Advance(At(5.0)), phase) << before;
+    EXPECT_EQ(one.Value("VI[1]"), phase == RunPhase::kHalted ? "0" : "1");
+  }
+}
+
+// OPT-9.26: a condition in a FUNCTION sees the parameters of the call that is carried out.
+TEST(RunHalts, ABreakpointSeesTheParametersOfItsCall) {
+  Halted one("FUNCTION 44 (1.)\nVI[1]=1\nFUNCTION 44 (2.)\nVI[1]=2\n",
+             {.programs = {{44, "DELAY 1\nRETURN\n"}}});
+  one.run->SetBreakpoints({{.at = {44, 1}, .condition = "PAR[0] > 1.5"}});
+  EXPECT_EQ(one.run->Advance(At(9.0)), RunPhase::kHalted);
+  EXPECT_EQ(one.run->state().time, At(2.0));
+  EXPECT_EQ(one.Value("VI[1]"), "1");
+}
+
 // One that is taken back meanwhile halts nothing.
 TEST(RunHalts, ABreakpointThatIsTakenBack) {
   Halted wait("WAIT IL[20]\nVI[1]=1\n");

@@ -82,6 +82,11 @@ TEST(TextEdges, AnAllowanceStandsAtTheEndOfItsRow) {
   EXPECT_EQ(at("SPEED 5\nSTOP ; x\n", 6), 7);
   EXPECT_EQ(at("STOP\n; x", 7), -1);
   EXPECT_EQ(at("  \nSTOP\n", 0), 0);
+  // A comment that says something else takes no number, whatever it ends with, nor does a directive
+  // behind which something is written.
+  EXPECT_EQ(at("SPEED 5 ; part 7", 0), -1);
+  EXPECT_EQ(at("SPEED 5 ; rmlcell: allow 7413 here", 0), -1);
+  EXPECT_EQ(at("SPEED 5 ; rmlcell: allow 7413", 0), 29);
 }
 
 // A jump to the end of the program, where nothing follows: nor does what memory held before.

@@ -125,5 +125,59 @@ TEST(AloneKeys, StepsBeginWithTheFirst) {
   EXPECT_EQ(steps->Show(12, 9).step, 3);
 }
 
+// OPT-5.10: what is out of range is gone to, also within a line, and typed into.
+TEST(AloneKeys, TheFieldThatIsOutOfRangeIsGoneTo) {
+  Form second(FormKind::kProcess, {{Field::Whole("A", 1, 1, 0, 9), Field::Whole("B", 1, 0, 1, 9)}});
+  EXPECT_FALSE(second.Check());
+  second.Type('7');
+  EXPECT_EQ(second.text(), "A1B7");
+  EXPECT_TRUE(second.Check());
+  Form first(FormKind::kProcess, {{Field::Whole("A", 1, 0, 1, 9), Field::Whole("B", 1, 2, 0, 9)}});
+  first.Move(true);
+  EXPECT_FALSE(first.Check());
+  first.Type('5');
+  EXPECT_EQ(first.text(), "A5B2");
+}
+
+// OPT-4.20: the C keys do nothing: no point is ready to record behind them.
+TEST_F(TaughtTwice, TheKeysOfCGiveNoPoint) {
+  Have({{12, "SPEED 1\n"}});
+  Keys("JOB 1 2 ENT C+ C-");
+  EXPECT_EQ(Shows(), "P=12S=0000I=********");
+  Keys("REC");
+  EXPECT_EQ(Shows(), "P=12S=0002I=ENDPRG");
+  EXPECT_THAT(edits, IsEmpty());
+}
+
+// LIVE-7.01: behind a power-up it is as it comes: what was the first point of a circle goes into no
+// MOVE any more.
+TEST(AloneKeys, APowerUpForgetsAFirstPoint) {
+  OptimoHandbox alone(machine::Parameters(OptimoFamily().parameters()), HandboxModes());
+  std::map<int, machine::StoredProgram> programs;
+  programs[12].object = machine::Bytes::Of(Compile("SPEED 1\n", "", {}).object);
+  machine::MachineStatus status{.mode = machine::Mode::kManual};
+  status.run.zeroed = true;
+  status.shown.program = 12;
+  const machine::MachineView view{.status = status, .programs = programs};
+  std::optional<machine::ProgramEdit> edit;
+  const auto press = [&](const std::vector<std::string>& keys) {
+    for (const std::string& key : keys) {
+      const Result<machine::HandboxAnswer> answer =
+          alone.Press(key, machine::KeyAction::kPress, view);
+      ASSERT_TRUE(answer) << key;
+      EXPECT_FALSE(answer->message.has_value()) << key;
+      edit = answer->edit;
+      EXPECT_EQ(alone.Done({}), std::nullopt) << key;
+    }
+  };
+  press({"PATH", "NEXT", "NEXT", "ENT", "X+", "REC"});
+  EXPECT_FALSE(edit.has_value());
+  alone.CyclePower();
+  press({"X+", "REC"});
+  ASSERT_TRUE(edit.has_value());
+  EXPECT_TRUE(edit->text_after.starts_with("MOVE (")) << edit->text_after;
+  EXPECT_EQ(edit->text_after.find("/VIA"), std::string::npos) << edit->text_after;
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo
