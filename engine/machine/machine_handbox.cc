@@ -196,11 +196,13 @@ bool Machine::EndEdit(int slot, std::string_view object) {
   return true;
 }
 
-// LIVE-7.02. What a run is at is shown as it was read.
+// LIVE-7.02. What a run is at is shown as it was read; a job of the queue leaves what is selected.
 void Machine::ShowAgain(int slot) {
-  const bool of_run = run_ != nullptr && !selected_ && !note_.by_hand;
+  const bool of_run = run_ != nullptr && !selected_ && !note_.by_hand && !of_a_job_;
   if (handbox_ == nullptr || of_run || shown_.program != slot) return;
-  shown_ = handbox_->ShowAgain(View());
+  MachineView view = View();
+  view.status.shown = shown_;
+  shown_ = handbox_->ShowAgain(view);
 }
 
 }  // namespace rmlcell::machine

@@ -245,10 +245,8 @@ class Player {
     }
     ++replayed_.inputs;
     const machine::MachineStatus status = machine_->status();
-    if (status.open && status.open->number > begun_) {
-      begun_ = status.open->number;
-      if (options_.begun) options_.begun(*machine_->open_run());
-    }
+    if (status.open && status.open->number > begun_ && options_.begun)
+      options_.begun(*machine_->open_run());
     Notice();
     return {};
   }

@@ -1,5 +1,7 @@
 #include "server/records/job_messages.h"
 
+#include <google/protobuf/util/time_util.h>
+
 #include "engine/core/units.h"
 #include "proto/bridge/findings.h"
 #include "server/base/names.h"
@@ -68,11 +70,7 @@ std::string VerdictWord(v1::Verdict verdict) {
 }  // namespace
 
 google::protobuf::Timestamp ToProto(storage::WallTime time) {
-  const std::int64_t us = time.time_since_epoch().count();
-  google::protobuf::Timestamp message;
-  message.set_seconds(us / 1'000'000);
-  message.set_nanos(static_cast<std::int32_t>(us % 1'000'000) * 1000);
-  return message;
+  return google::protobuf::util::TimeUtil::MicrosecondsToTimestamp(time.time_since_epoch().count());
 }
 
 v1::Job::State ToProto(storage::JobState state) {

@@ -21,16 +21,14 @@ void NoteActed(v1::HaltJobResponse* response) {
       ToProto(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now()));
 }
 
-// The same order for a machine that lives.
+// The same order for a machine that lives: STOP or HOLD.
 template <class Request>
 v1::HostOrder OrderOf(v1::WorkerControl::Kind kind, const Request& request) {
   v1::HostOrder order;
   if (kind == v1::WorkerControl::KIND_STOP) {
     order.mutable_stop()->set_request_id(request.request_id());
-  } else if (kind == v1::WorkerControl::KIND_HOLD) {
-    order.mutable_hold()->set_request_id(request.request_id());
   } else {
-    order.mutable_resume()->set_request_id(request.request_id());
+    order.mutable_hold()->set_request_id(request.request_id());
   }
   return order;
 }

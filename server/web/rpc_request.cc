@@ -35,13 +35,7 @@ bool IsHidden(const std::string& service) {
 }
 
 bool MayBeRead(const MethodDescriptor& method) {
-  if (method.server_streaming()) return true;
-  return std::ranges::any_of(kReadingPrefixes, [&](std::string_view prefix) {
-    const std::string& name = method.name();
-    // A whole word: GetJob, not Getaway.
-    return name.starts_with(prefix) && (name.size() == prefix.size() ||
-                                        (name[prefix.size()] >= 'A' && name[prefix.size()] <= 'Z'));
-  });
+  return method.server_streaming() || OnlyReads(method.name());
 }
 
 const MethodDescriptor* FindMethod(std::string_view path) {
@@ -239,6 +233,14 @@ bool LooksLikeMethod(std::string_view path) {
   return service.find('.') != std::string_view::npos &&
          std::ranges::all_of(service, [&](char c) { return is_name(c) || c == '.'; }) &&
          std::ranges::all_of(path.substr(slash + 1), is_name);
+}
+
+bool OnlyReads(std::string_view method) {
+  return std::ranges::any_of(kReadingPrefixes, [method](std::string_view prefix) {
+    if (!method.starts_with(prefix)) return false;
+    return method.size() == prefix.size() ||
+           (method[prefix.size()] >= 'A' && method[prefix.size()] <= 'Z');
+  });
 }
 
 RpcRouting RouteRpc(const HttpRequest& request) {

@@ -48,6 +48,10 @@ struct RpcRouting {
 // True when a path may be a method: "/package.Service/Method".
 bool LooksLikeMethod(std::string_view path);
 
+// True when a method of this name changes nothing: Get, List, Watch, Stream or Explain as a whole
+// word, so GetJob and not Getaway.
+bool OnlyReads(std::string_view method);
+
 // Finds method and form. Refused: unknown methods and services that are not for browsers (404),
 // methods with a client stream (501), other HTTP methods than GET, POST (405), a POST without one
 // of our content types (415; that also keeps out the forms of foreign pages), and GET for a method

@@ -111,7 +111,6 @@ class Attempt {
     events_.AddUntold(untold);
     const auto first = std::ranges::find_if(
         made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
-    outcome_ = v1::Outcome();
     outcome_.set_kind(v1::Outcome::KIND_COMPLETED);
     if (first != made.diagnostics.end()) {
       outcome_ = OutcomeFor(machine::OutcomeKind::kFailed, first->code, first->detail);

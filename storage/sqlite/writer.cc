@@ -270,7 +270,6 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
       pending->operation->Undone();
       pending->status = {};
     }
-    stood.clear();
     return outcome;
   };
   const auto lose = [&](const Error& reason) {

@@ -286,6 +286,7 @@ class HandboxScreenTest(unittest.TestCase):
         for percent in (57.0, 58.0, 59.0):
             self.machine.is_now(overridePercent=percent)
             self.assertTrue(terminal.shows(f"override {percent:.0f} %"), terminal.text())
+        self.assertNotIn("let go: the terminal", terminal.text())  # nothing was down
         self.assertNotIn(b"START", terminal.seen[drawn:])
         self.assertNotIn(b"READY", terminal.seen[drawn:])
 

@@ -238,6 +238,21 @@ TEST_P(StoreConformance, WhatNamesNoContentIsNotStored) {
   EXPECT_TRUE(Must(store().ListArtifacts(job)).empty());
 }
 
+// store.h Done: an end that is refused is answered once, and the job is still its holder's.
+TEST_P(StoreConformance, AnEndThatNamesAnUnknownContentIsAnswered) {
+  const std::int64_t job = SubmitOne(store());
+  const Lease lease = AcquireAll(store()).at(0).lease;
+  const auto end = std::make_shared<const JobEnd>(
+      JobEnd{.artifacts = {{.name = "a", .existing_sha256 = std::string(64, 'a')}}});
+  const auto code = std::make_shared<std::promise<std::optional<ErrorCode>>>();
+  store().SendFinish(lease, end, {},
+                     [code](const Result<FinishedJob>& ended) { code->set_value(CodeOf(ended)); });
+  auto answer = code->get_future();
+  ASSERT_EQ(answer.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(answer.get(), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kRunning);
+}
+
 // A worker that is done is given the next job with the same commit: what follows the end of one,
 // and nothing with an end that is not stored.
 TEST_P(StoreConformance, AnEndBringsTheNextJob) {

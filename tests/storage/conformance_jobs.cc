@@ -282,6 +282,32 @@ TEST_P(StoreConformance, RunningJobIsMarkedAndItsHolderEndsIt) {
   EXPECT_EQ(after.last_sequence, 0);
 }
 
+// store.h RequestCancel, final: nothing of it changes, and nothing is told.
+TEST_P(StoreConformance, AnEndedJobStaysAsItIs) {
+  const LeasedJob leased = (Submit(), Acquire());
+  const JobRecord ended = Finish(leased.lease);
+  const std::uint64_t before = store().JobChanges(ended.id);
+  clock().Advance(std::chrono::seconds(1));
+  const JobRecord late = Must(store().RequestCancel(ended.id, {{.kind = "ended", .payload = ""}}));
+  for (const JobRecord& job : {late, Must(store().GetJob(ended.id))}) {
+    EXPECT_EQ(job.state, JobState::kSucceeded);
+    EXPECT_FALSE(job.cancel_requested);
+    EXPECT_EQ(job.finished_at, ended.finished_at);
+    EXPECT_EQ(job.last_sequence, 0);
+  }
+  EXPECT_EQ(store().JobChanges(ended.id), before);
+}
+
+// store.h FindSubmitted: the job of a request, nothing where there was none, and a refusal where it
+// was another one.
+TEST_P(StoreConformance, ARequestIsLookedUp) {
+  const JobRecord job =
+      Must(store().SubmitAndWait({.request_id = "r", .request_hash = "h", .kind = "CHECK"})).job;
+  EXPECT_EQ(Must(store().FindSubmitted("r", "h"))->id, job.id);
+  EXPECT_FALSE(Must(store().FindSubmitted("s", "h")));
+  EXPECT_EQ(CodeOf(store().FindSubmitted("r", "i")), ErrorCode::kCellRequestIdReused);
+}
+
 // A cancel and a lease at the same time: the job is cancelled in the queue, or it is leased and
 // marked.
 TEST_P(StoreConformance, CancelRacesWithLease) {

@@ -90,5 +90,16 @@ TEST_F(SqliteBlobs, StayWhileTheyAreNamedOrHeld) {
   EXPECT_EQ(Count("blob_chunk"), 1);
 }
 
+// 9104: what stays though it was removed would be met again and again.
+TEST_F(SqliteBlobs, ThatStayAreTold) {
+  BlobTable table(database_);
+  AddGarbage(1, 0);
+  Must(database_.Execute(
+      "CREATE TRIGGER keeps BEFORE DELETE ON blob BEGIN SELECT RAISE(IGNORE); END"));
+  const Result<bool> swept = table.Sweep(3, 8);
+  ASSERT_EQ(CodeOf(swept), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(swept.error().detail, "blob 1: is not there");
+}
+
 }  // namespace
 }  // namespace rmlcell::storage::sqlite

@@ -203,6 +203,8 @@ TEST_F(SqliteContents, AnUploadOfAChunkThatShrinksLiesInItsRow) {
   EXPECT_EQ(Count("blob_chunk"), 0);
   upload(std::string(kChunkBytes + 1, 'x'));
   EXPECT_EQ(Count("blob_chunk"), 2);
+  upload(std::string(2 * kChunkBytes, 'x'));  // two parts, and none of nothing behind them
+  EXPECT_EQ(Count("blob_chunk"), 4);
 }
 
 // content.h kContentInRecordMax: on both sides.

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <future>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -245,6 +246,23 @@ TEST(SqliteEdges, WhoLeavesWaitsForTheCallThatIsUnderWay) {
   EXPECT_FALSE(overtaken.get_future().get());
 }
 
+// What its function holds goes with a subscription, also one that is ended inside the call.
+TEST(SqliteEdges, WhatAWatcherHeldGoesWithIt) {
+  Watchers watchers;
+  auto held = std::make_shared<int>(7);
+  const std::weak_ptr<int> seen = held;
+  std::promise<void> told;
+  std::unique_ptr<Store::Subscription> watch;
+  watch = watchers.Add([&watch, &told, held] {
+    watch.reset();
+    told.set_value();
+  });
+  held.reset();
+  watchers.Notify();
+  told.get_future().wait();
+  EXPECT_TRUE(Eventually([&] { return seen.expired(); }));
+}
+
 // A page of nothing has nothing.
 TEST(SqliteEdges, ALimitOfNothingIsNothing) {
   SqliteBed bed;
@@ -336,6 +354,42 @@ TEST(SqliteEdges, ACommitThatIsRefusedIsUndone) {
   EXPECT_EQ(Must(database.Number("SELECT count(*) FROM child")), 0);
 }
 
+// What could not begin is an error, and has nothing to undo: neither within a transaction nor, for
+// a part of one, while a write is read.
+TEST(SqliteEdges, WhatCannotBeginIsAnError) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  Database database = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Must(database.Execute("CREATE TABLE filling (name TEXT)"));
+  TransactionStatements statements(database);
+  Transaction first = Must(Transaction::Begin(statements, Transaction::Kind::kWrite));
+  EXPECT_NE(CodeOf(Transaction::Begin(statements, Transaction::Kind::kWrite)), std::nullopt);
+  EXPECT_TRUE(database.in_transaction());
+  Statement add(database, "INSERT INTO filling VALUES ('one') RETURNING name");
+  {
+    Query query = add.With();
+    ASSERT_TRUE(Must(query.Step()));
+    EXPECT_NE(CodeOf(Savepoint::Begin(statements)), std::nullopt);
+  }
+  Must(first.Commit());
+  EXPECT_EQ(Must(database.Number("SELECT count(*) FROM filling")), 1);
+}
+
+// Also the opening of a connection looks at the file, and says when another one keeps it.
+TEST(SqliteEdges, AFileThatIsKeptFromAllIsNotOpened) {
+  const TestDirectory directory;
+  const std::string path = directory.File("x.db");
+  ExecuteIn(path, "CREATE TABLE something (it)");
+  Database other = Must(Database::Open(path, Database::Access::kReadWrite, {}));
+  Must(other.Execute("BEGIN EXCLUSIVE"));
+  const ConnectionOptions soon{.vfs = {}, .busy_timeout = std::chrono::milliseconds(10)};
+  EXPECT_EQ(CodeOf(Database::Open(path, Database::Access::kReadWrite, soon)),
+            ErrorCode::kCellStoreBusy);
+  Must(other.Execute("ROLLBACK"));
+  EXPECT_FALSE(CodeOf(Database::Open(path, Database::Access::kReadWrite, soon)));
+}
+
 // What the system said of one failure is no reason of the next one.
 TEST(SqliteEdges, TheSystemIsNamedForItsOwnFailuresOnly) {
   const TestDirectory directory;
@@ -364,6 +418,8 @@ TEST(SqliteEdges, AStatementHasOneQuery) {
     EXPECT_TRUE(Must(query.Step()));
     EXPECT_DEATH((void)statement.With(), "check failed");
   }
+  Statement of_two(database, "SELECT ?1, ?2");
+  EXPECT_DEATH((void)of_two.With(1), "check failed");  // each parameter has its value
   Query again = statement.With();
   EXPECT_TRUE(Must(again.Step()));
 }

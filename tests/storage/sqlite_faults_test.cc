@@ -292,6 +292,34 @@ TEST_F(SqliteFaults, ARequestWithdrawnBehindAFailedCommitHasNothing) {
   EXPECT_TRUE(Must(answers[0]).empty());
 }
 
+// And where the job could not be given out, which here another attempt of its number keeps from
+// being: what was found out in a commit that failed was not found out.
+TEST_F(SqliteFaults, ARequestThatFailsInAFailedCommitStands) {
+  bed_.Close();
+  ExecuteIn(bed_.path(),
+            "INSERT INTO attempt (job, number, worker, fence, started_at, how_it_ended)"
+            " VALUES (1, 1, 'w', 99, 0, '')");
+  bed_.Reopen();
+  std::vector<Result<std::vector<LeasedJob>>> answers;
+  const auto await = [&] {
+    store().AwaitJobs({.worker = "w", .kinds = {"SIMULATE"}, .duration = std::chrono::seconds(10)},
+                      [&](auto leased) { answers.push_back(std::move(leased)); });
+    Must(store().ActOn({}, QueueAct::kHold, {}));
+  };
+  await();
+  faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
+  EXPECT_EQ(CodeOf(Submit("r")), kFailed);
+  faulty_disk::Heal();
+  EXPECT_EQ(answers.size(), 0U);
+  const std::int64_t job = Must(Submit("r")).job.id;
+  await();  // the same of one that comes when the job is there
+  ASSERT_EQ(answers.size(), 2U);
+  for (const auto& answer : answers) EXPECT_EQ(CodeOf(answer), kFailed);
+  EXPECT_EQ(Must(store().GetJob(job)).state, JobState::kQueued);
+  EXPECT_EQ(NumberIn(bed_.path(), "SELECT count(*) FROM lease"), 0);
+  EXPECT_EQ(Must(store().CountJobs()).queued, 1);
+}
+
 // performance.md Q5: a job that is made and given out, and its end: the disk is waited for twice.
 TEST_F(SqliteFaults, ALoneJobIsTwoSyncs) {
   std::vector<Result<std::vector<LeasedJob>>> answers;
@@ -323,6 +351,27 @@ TEST_F(SqliteFaults, OpeningOnAFullDiskIsAnError) {
   }
   bed_.Reopen();  // what a failed start left behind is no obstacle
   Must(Submit("r"));
+}
+
+// Tidying whose commit fails is undone with all that it counted: what stayed goes with the next.
+TEST(SqliteFullDisk, WhatAFailedCommitRemovedGoesWithTheNext) {
+  SqliteOptions options = OnFaultyDisk();
+  options.keep_finished_jobs = 1;
+  SqliteBed bed(options);
+  const auto end_one = [&](const std::function<void()>& answered) {
+    const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.id;
+    bed.clock().Advance(std::chrono::seconds(1));
+    bed.store().SendRequestCancel(job, {}, [answered](const Result<JobRecord>&) { answered(); });
+    EXPECT_TRUE(ComesToRest());  // what there was to tidy is tidied
+  };
+  const auto jobs = [&] { return NumberIn(bed.path(), "SELECT count(*) FROM job"); };
+  end_one([] {});
+  // The write is committed when it is answered, and nothing is tidied yet.
+  end_one([] { faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC}); });
+  faulty_disk::Heal();
+  EXPECT_EQ(jobs(), 2);
+  end_one([] {});
+  EXPECT_EQ(jobs(), 1);
 }
 
 // While it lives, whoever names no disk has the faulty one.
@@ -397,6 +446,23 @@ TEST(SqliteFullDisk, AWriteThatTheDiskRefusesHasItsReason) {
   ASSERT_EQ(CodeOf(refused), kFailed);
   EXPECT_NE(refused.error().detail.find("(SQLite 778): "), std::string::npos)
       << refused.error().detail;
+}
+
+// database.h Checkpoint: that nothing could be moved is no answer to whether all was.
+TEST(SqliteFullDisk, ACheckpointThatTheDiskRefusesIsAnError) {
+  faulty_disk::Register();
+  faulty_disk::Heal();
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  Must(OpenSqliteStore({.path = path})).reset();
+  sqlite::Database database = Must(sqlite::Database::Open(
+      path, sqlite::Database::Access::kReadWrite, {.vfs = faulty_disk::kName}));
+  Must(database.Execute("CREATE TABLE filling (bytes BLOB)"));
+  faulty_disk::Fail({.on_write = SQLITE_IOERR_WRITE});
+  const Result<bool> refused = database.Checkpoint();
+  faulty_disk::Heal();
+  EXPECT_EQ(CodeOf(refused), kFailed);
+  EXPECT_TRUE(Must(database.Checkpoint()));
 }
 
 }  // namespace

@@ -1,6 +1,11 @@
 // When the embedded store tidies up, and how much of it at a time.
 #include <gmock/gmock.h>
 
+#include <future>
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "engine/core/hex.h"
 #include "storage/content.h"
 #include "storage/sqlite/housekeeping.h"
@@ -249,6 +254,31 @@ TEST_F(SqliteSlices, AJobThatIsNotThere) {
   EXPECT_EQ(removed.error().detail, "job 7 is not there");
 }
 
+// A job whose number, or the position of whose events, cannot be kept stays: they would come again.
+TEST_F(SqliteSlices, NothingGoesWhoseNumbersAreNotKept) {
+  for (int job = 1; job <= 2; ++job) AddFinishedJob(job);
+  AddEvents(1, 3);
+  const Counters before{.job = 2, .position = 3, .finished_jobs = 2};
+  for (const std::string_view mark : {MarkTable::kJob, MarkTable::kPosition}) {
+    Must(connection_.database.Execute(
+        "CREATE TRIGGER refuses BEFORE INSERT ON mark WHEN new.name = '" + std::string(mark) +
+        "' BEGIN SELECT RAISE(ABORT, 'not this one'); END"));
+    counters_ = before;
+    EXPECT_EQ(CodeOf(Slice({.finished_jobs = 1})), ErrorCode::kCellStoreFailed) << mark;
+    WriteContext context{.tables = connection_.tables,
+                         .counters = counters_,
+                         .program_memory = no_limit_,
+                         .machines = no_machines_,
+                         .now = now_};
+    EXPECT_EQ(CodeOf(RemoveJobWhole(context, 1)), ErrorCode::kCellStoreFailed) << mark;
+    EXPECT_EQ(Count("job"), 2) << mark;
+    EXPECT_EQ(Count("event"), 3) << mark;
+    Must(connection_.database.Execute("DROP TRIGGER refuses"));
+  }
+  EXPECT_FALSE(Must(Slice({.finished_jobs = 1})));
+  EXPECT_EQ(Count("job"), 1);
+}
+
 class SqliteFailingSlices : public SqliteSlices {
  protected:
   // Before the file is opened: connections of before know nothing of it.
@@ -325,6 +355,55 @@ TEST(SqliteTidying, WhatCouldNotBeRemovedGoesWithTheNext) {
   EXPECT_EQ(jobs(), 2);
   end_one();
   EXPECT_EQ(jobs(), 1);
+}
+
+// The same where another program has taken the file meanwhile, here with the answer to the write:
+// it is committed then, and nothing is tidied yet.
+TEST(SqliteTidying, WhatCannotBeginIsDoneByTheNext) {
+  SqliteOptions options;
+  options.busy_timeout = std::chrono::milliseconds(50);
+  options.keep_finished_jobs = 1;
+  SqliteBed bed(options);
+  Database other = Must(Database::Open(bed.path(), Database::Access::kReadWrite, {}));
+  const auto end_one = [&](bool is_taken) {
+    const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.id;
+    bed.clock().Advance(std::chrono::seconds(1));
+    std::promise<void> answered;
+    bed.store().SendRequestCancel(job, {}, [&](const Result<JobRecord>&) {
+      if (is_taken) Must(other.Execute("BEGIN IMMEDIATE"));
+      answered.set_value();
+    });
+    answered.get_future().wait();
+    EXPECT_TRUE(ComesToRest());
+  };
+  const auto jobs = [&] { return NumberIn(bed.path(), "SELECT count(*) FROM job"); };
+  end_one(false);
+  end_one(true);
+  EXPECT_EQ(jobs(), 2);
+  Must(other.Execute("ROLLBACK"));
+  end_one(false);
+  EXPECT_EQ(jobs(), 1);
+}
+
+// The same where it is counted no less: what was removed is there again.
+TEST(SqliteTidying, WhatIsCountedNoLessStays) {
+  SqliteOptions options;
+  options.keep_finished_jobs = 1;
+  SqliteBed bed(options);
+  bed.Close();
+  ExecuteIn(bed.path(),
+            "CREATE TRIGGER refuses BEFORE INSERT ON mark WHEN new.name = 'finished jobs' AND"
+            " new.value < (SELECT value FROM mark WHERE name = 'finished jobs')"
+            " BEGIN SELECT RAISE(ABORT, 'not less'); END");
+  bed.Reopen();
+  for (int i = 0; i < 2; ++i) {
+    const std::int64_t job = Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.id;
+    bed.clock().Advance(std::chrono::seconds(1));
+    Must(bed.store().RequestCancel(job, {}));
+    EXPECT_TRUE(ComesToRest());
+  }
+  EXPECT_EQ(NumberIn(bed.path(), "SELECT count(*) FROM job"), 2);
+  EXPECT_EQ(NumberIn(bed.path(), "SELECT value FROM mark WHERE name = 'finished jobs'"), 2);
 }
 
 // writer.cc: what could not be removed is tried again by the next write that leaves something to

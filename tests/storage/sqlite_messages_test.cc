@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -96,6 +97,10 @@ TEST_F(SqliteMessages, OfJobs) {
                  .attachments = {{.name = "main", .bytes = "a"}, {.name = "main", .bytes = "b"}}})),
             "two artifacts named main");
   EXPECT_EQ(DetailOf(store().GetArtifact(1, "report")), "job 1 has no artifact report");
+  for (const auto& refused :
+       {DetailOf(store().GetArtifact(7, "report")), DetailOf(store().ReadArtifact(7, "report")),
+        DetailOf(store().OpenArtifact(7, "report"))})
+    EXPECT_EQ(refused, "job 7");
   EXPECT_EQ(DetailOf(store().ReadBlob("xyz")), "no content with SHA-256 xyz");
   const std::string hash(64, 'a');
   EXPECT_EQ(DetailOf(store().ReadBlob(hash)), "no content with SHA-256 " + hash);
@@ -248,6 +253,32 @@ TEST(SqliteFiles, WhatCannotBeOpenedIsNamedWithItsReason) {
   EXPECT_EQ(DetailOf(MakeDirectoryOf(too_long + "/cell.db")),
             "cannot make directory " + too_long + ": File name too long");
   EXPECT_EQ(DetailOf(MakeDirectoryOf("cell.db")), "none");  // here
+}
+
+// A new file whose name may not be on the disk is no file of ours. There is room for one more open
+// file here: the file itself, and not its directory.
+TEST(SqliteFiles, ADirectoryThatIsNotSyncedIsNamed) {
+  const TestDirectory directory;
+  const std::string path = directory.File("cell.db");
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);  // the lowest number that is free
+  ASSERT_GE(next, 0);
+  close(next);
+  struct rlimit limit {};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
+  struct rlimit one_more = limit;
+  one_more.rlim_cur = static_cast<rlim_t>(next) + 1;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &one_more), 0);
+  const Status made = MakePrivateFile(path);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_EQ(DetailOf(made), "cannot sync directory " + folder + ": Too many open files");
+  EXPECT_EQ(CodeOf(made), ErrorCode::kCellStoreFailed);
+}
+
+// proc(5): everybody may read it, and nobody changes that.
+TEST(SqliteFiles, AModeThatCannotBeSetIsNamed) {
+  EXPECT_EQ(DetailOf(MakePrivateFile("/proc/self/comm")),
+            "cannot set the mode of /proc/self/comm: Operation not permitted");
 }
 
 // A lock that another one holds: who it is, up to the end of the first line, of 23 characters.

@@ -3,9 +3,12 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <set>
+#include <string>
 
 #include "storage/sqlite/migrations.h"
 #include "storage/sqlite/store_files.h"
+#include "tests/storage/failing_statements.h"
 #include "tests/storage/sqlite_bed.h"
 
 namespace rmlcell::storage::sqlite {
@@ -109,6 +112,33 @@ TEST_F(SqliteMigrations, FailedStepChangesNothing) {
   EXPECT_EQ(NumberIn(path_, "PRAGMA user_version"), 1);
   EXPECT_EQ(NumberIn(path_, "SELECT count(*) FROM pragma_table_info('part')"), 1);
   Must(MigrateTo(3));
+}
+
+// The same whichever of its statements fails: what it does, that it is noted, and its number.
+TEST_F(SqliteMigrations, AStepIsDoneWholeOrNotAtAll) {
+  failing_statements::Register();
+  Must(MigrateTo(2));
+  const std::string before = ReadFile(path_);
+  std::set<std::string> failures;
+  for (int number = 0;; ++number) {
+    WriteFile(path_, before);
+    Database database = Open();
+    failing_statements::Fail(failing_statements::Of::kWriter, number);
+    const Status migrated = Migrate(database, kThree, path_, WallTime{});
+    const std::string failed = failing_statements::Heal();
+    if (failed.empty()) {
+      EXPECT_FALSE(CodeOf(migrated));
+      EXPECT_EQ(Must(database.Number("PRAGMA user_version")), 3);
+      break;
+    }
+    failures.insert(failed);
+    EXPECT_EQ(CodeOf(migrated), ErrorCode::kCellStoreFailed) << failed;
+    EXPECT_EQ(Must(database.Number("PRAGMA user_version")), 2) << failed;
+    EXPECT_EQ(Must(database.Number("SELECT count(*) FROM migration")), 2) << failed;
+    if (migrated) break;
+  }
+  EXPECT_TRUE(failures.contains("PRAGMA user_version = 3"));
+  EXPECT_GE(failures.size(), 5U);
 }
 
 TEST_F(SqliteMigrations, DatabaseOfAnotherProgramIsRefused) {

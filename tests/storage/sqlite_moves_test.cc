@@ -4,6 +4,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/hex.h"
@@ -47,6 +48,43 @@ TEST_F(SqliteMoves, WhatIsMovedToTheEndStandsThereHoweverOften) {
     Must(store().Move(second, 0, {}, {}));
     ASSERT_THAT(InOrder(), ElementsAre(third, first, second)) << i;
   }
+}
+
+// Where there is room between two, who is moved there takes half of it and nobody else has another
+// place.
+TEST_F(SqliteMoves, WhereThereIsRoomNoOtherIsMoved) {
+  Put({});
+  const std::int64_t back = Put({});
+  const std::int64_t moved = Put({});
+  const std::int64_t last = Put({});
+  Must(store().Move(moved, back, {}, {}));
+  EXPECT_EQ(Must(store().GetJob(moved)).place, 1.5);
+  const std::uint64_t before = store().JobChanges(moved);
+  EXPECT_EQ(Must(store().Move(last, back, {}, {})).place, 1.75);
+  EXPECT_EQ(Must(store().GetJob(moved)).place, 1.5);
+  EXPECT_EQ(store().JobChanges(moved), before);
+}
+
+// Where there is none, those that were moved part the way from 1 to 2 evenly, each counted once.
+TEST_F(SqliteMoves, ThoseWithoutRoomPartTheWay) {
+  Put({});
+  const std::int64_t back = Put({});
+  std::int64_t mover = Put({});
+  std::int64_t other = Put({});
+  Must(store().Move(other, back, {}, {}));
+  int spreads = 0;
+  for (int i = 0; i < 120; ++i) {
+    const double before = Must(store().GetJob(other)).place;
+    const double place = Must(store().Move(mover, back, {}, {})).place;
+    const double after = Must(store().GetJob(other)).place;
+    if (after != before) {
+      ++spreads;
+      EXPECT_DOUBLE_EQ(after, 4.0 / 3.0);
+      EXPECT_DOUBLE_EQ(place, 5.0 / 3.0);
+    }
+    std::swap(mover, other);
+  }
+  EXPECT_GE(spreads, 2);
 }
 
 // Ready ones come before those that are held back, whatever their priority is.

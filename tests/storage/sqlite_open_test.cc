@@ -111,6 +111,10 @@ TEST(SqliteOpen, PathsThatCannotBeAreRefused) {
   const auto unlocked = OpenAt(directory.File("held.db"));
   EXPECT_EQ(CodeOf(unlocked), kRefused);
   EXPECT_THAT(unlocked.error().detail, HasSubstr("cannot open lock file"));
+  const std::string path = directory.File("cell.db");
+  const auto unknown = OpenSqliteStore({.path = path, .vfs = "no such disk"});
+  ASSERT_EQ(CodeOf(unknown), kRefused);
+  EXPECT_THAT(unknown.error().detail, HasSubstr(path + ": "));
 }
 
 // Issue 2: a second store on the same file is refused, in this process and from another.

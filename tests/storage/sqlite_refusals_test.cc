@@ -95,6 +95,24 @@ TEST(SqliteRefusals, AnEndIsStoredThoughTheNextJobIsDamaged) {
   EXPECT_EQ(Must(bed.store().GetJob(2)).state, JobState::kQueued);
 }
 
+// A job that counts as waiting for another one, and is over, is not touched by the end of that one.
+TEST(SqliteRefusals, WhatIsOverFollowsNobody) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  Must(bed.store().SubmitAndWait({.kind = "CHECK", .after = {1}}));
+  bed.Close();
+  ExecuteIn(bed.path(), "UPDATE job SET state = 3 WHERE id = 2");
+  const std::string blocked = "SELECT blocked FROM job WHERE id = 2";
+  const std::int64_t before = NumberIn(bed.path(), blocked);
+  EXPECT_NE(before, 0);
+  bed.Reopen();
+  const auto leased = Must(bed.store().Acquire("w", {"CHECK"}, kLease, {}));
+  ASSERT_TRUE(leased);
+  EXPECT_EQ(Must(bed.store().Finish(leased->lease, {})).state, JobState::kSucceeded);
+  EXPECT_EQ(NumberIn(bed.path(), blocked), before);
+}
+
 // The program that is kept with its job: other bytes, a part of them, or none.
 TEST(SqliteRefusals, AProgramThatIsDamagedInItsJob) {
   for (const char* damage : {"x'6162'", "substr(attachment, 1, 9)", "NULL"}) {
@@ -221,6 +239,8 @@ TEST_F(SqliteAlone, QuestionWithoutAnAnswer) {
   EXPECT_EQ(Must(database.Text("SELECT 'seven'")), "seven");
   EXPECT_EQ(CodeOf(database.Number("SELECT id FROM job")), kCorruptFile);
   EXPECT_EQ(CodeOf(database.Text("SELECT kind FROM job")), kCorruptFile);
+  EXPECT_EQ(CodeOf(database.Number("SELECT none FROM job")), kFailedFile);
+  EXPECT_EQ(CodeOf(database.Text("SELECT none FROM job")), kFailedFile);
 }
 
 // database.h: not even we change the schema by its text.
@@ -282,6 +302,26 @@ TEST_F(SqliteOwnWriter, WriteThatThrows) {
   EXPECT_EQ(Must(writer.Do(
                 [](WriteContext& context) { return context.tables.marks.Get(MarkTable::kJob); })),
             0);
+}
+
+// writer.h: almost every write is good or fails before it has written, and is run once; one that
+// fails later is run again, so that it is undone alone.
+TEST_F(SqliteOwnWriter, AWriteIsRunOnceUnlessItFailsLate) {
+  Writer writer(connection_, {}, {}, kRoomy, SystemTime, [] {});
+  const auto runs_of = [&](bool writes, bool fails) {
+    int runs = 0;
+    const Status done = writer.Do([&](WriteContext& context) -> Status {
+      ++runs;
+      if (writes) Must(context.tables.marks.Set(MarkTable::kJob, 99));
+      return fails ? Status(InvalidArgument("not this one")) : Status();
+    });
+    EXPECT_EQ(done.ok(), !fails);
+    return runs;
+  };
+  EXPECT_EQ(runs_of(true, false), 1);
+  EXPECT_EQ(runs_of(false, false), 1);
+  EXPECT_EQ(runs_of(false, true), 1);
+  EXPECT_EQ(runs_of(true, true), 2);
 }
 
 // content_staging.cc: a large content goes ahead in writes of 4 MiB, so that others get their turn
@@ -372,6 +412,8 @@ TEST_F(SqliteOwnWriter, AJobCountsAsBeingChangedWhileItIsCommitted) {
   }
   sqlite3_commit_hook(handle, nullptr, nullptr);
   EXPECT_TRUE(watch.being_changed);
+  // Who counted is gone, and SQLite tells it nothing more.
+  EXPECT_EQ(sqlite3_update_hook(handle, nullptr, nullptr), nullptr);
 }
 
 // 9104: all bytes of a content are there, and it is another one than its name says.

@@ -99,6 +99,19 @@ TEST_F(SqliteRoom, WhatAJobMadeIsDropped) {
   EXPECT_EQ(Memory(), "1: 3+4, 2: 3");
 }
 
+// Where as much may be as comes nobody asks how much there is: a program that is damaged keeps no
+// other one out.
+TEST_F(SqliteRoom, OfAMemoryWithoutALimitNothingIsRead) {
+  bed_.LeaveUnchecked();
+  ASSERT_TRUE(Put(1, 6, "mill"));
+  bed_.Close();
+  ExecuteIn(bed_.path(), "DELETE FROM blob");
+  bed_.Reopen();
+  EXPECT_EQ(CodeOf(store().ListPrograms("mill", 0, 9)), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(CodeOf(Put(2, 5, "mill")), std::nullopt);
+  EXPECT_EQ(Must(store().GetProgramSummary("mill", 2)).object_bytes, 5);
+}
+
 // Where the machine has less than is in it already, it may have no more.
 TEST_F(SqliteRoom, AMemoryThatIsTooFullMayShrink) {
   ASSERT_TRUE(Put(1, 6));

@@ -302,6 +302,8 @@ TEST_F(SqliteStatements, OfPartsThatGoAhead) {
   };
   FailsAt("INSERT INTO blob (", put("p"));
   FailsAt("INSERT INTO blob_chunk ", put("p"));
+  FailsAt("UPDATE blob SET sha256 = ?2", put("p"));  // all parts are there
+  FailsAt("UPDATE blob SET refs", put("p"));
   EXPECT_EQ(CodeOf(store().GetProject("p")), ErrorCode::kCellNotFound);
   Must(put("p")());
   FailsAt("UPDATE blob SET holds", put("q"));  // it is there already
@@ -374,6 +376,31 @@ TEST_F(SqliteStatements, OfARequestThatFindsItsJob) {
       EXPECT_EQ(CodeOf(leased), ErrorCode::kCellStoreFailed) << failed;
       EXPECT_EQ(state, JobState::kQueued) << failed;
     }
+  }
+}
+
+// The answer to a request that is known has its job whole, or there is none.
+TEST_F(SqliteStatements, OfARequestThatIsKnown) {
+  const NewJob job{.request_id = "r", .kind = "CHECK", .specification = "what to do"};
+  Must(store().SubmitAndWait(job));
+  FailsAt("SELECT specification", [&] { return store().SubmitAndWait(job); });
+  const SubmittedJob known = Must(store().SubmitAndWait(job));
+  EXPECT_TRUE(known.already_there);
+  EXPECT_EQ(known.job.specification, "what to do");
+}
+
+// What is read behind a write that is done is told whole, or not at all: the write stands.
+TEST_F(SqliteStatements, OfWhatIsReadBehindAWrite) {
+  const std::int64_t job = Submit({.kind = "CHECK", .specification = "what to do", .held = true});
+  for (int number = 0;; ++number) {
+    failing_statements::Fail(Of::kReaders, number);
+    const auto held = store().HoldBack(job, {});
+    const std::string failed = failing_statements::Heal();
+    ASSERT_TRUE(held) << failed;
+    EXPECT_EQ(held->specification, failed.empty() ? "what to do" : "") << failed;
+    if (!failed.empty()) continue;
+    EXPECT_GE(number, 2);  // what it works on, and what it waits for
+    return;
   }
 }
 

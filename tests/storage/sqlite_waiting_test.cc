@@ -360,6 +360,61 @@ TEST(SqliteStanding, OfThoseWhoAskForTheSameOneIsTried) {
   EXPECT_EQ(tries({one, machines}), first + 1);
 }
 
+// Who was given a job did not find nothing: of two jobs that come in one commit each of those who
+// wait for the same is given one.
+TEST(SqliteStanding, JobsOfOneCommitGoToAllWhoWait) {
+  std::atomic<int> given = 0;
+  std::atomic<int> made = 0;
+  SqliteBed bed;
+  for (const char* worker : {"a", "b"}) {
+    bed.store().AwaitJobs({.worker = worker, .kinds = {"SIMULATE"}, .duration = kLease},
+                          [&](const Result<std::vector<LeasedJob>>& leased) {
+                            given += leased ? static_cast<int>(leased->size()) : 0;
+                          });
+  }
+  Must(bed.store().ActOn({}, QueueAct::kHold, {}));  // they stand
+  {
+    const StandingWriter stands(bed.store());
+    for (int i = 0; i < 2; ++i)
+      bed.store().Submit({.kind = "SIMULATE"}, [&](const Result<SubmittedJob>&) { ++made; });
+  }
+  EXPECT_TRUE(Eventually([&] { return made == 2; }));
+  EXPECT_EQ(given, 2);  // before those that made the jobs are answered
+  EXPECT_EQ(Must(bed.store().CountJobs()).running, 2);
+}
+
+// What the clock lets go is written: who cannot write it says so, and it goes with the next call.
+TEST(SqliteLoneWrites, WhatIsDueWaitsForTheFile) {
+  SqliteOptions options;
+  options.busy_timeout = std::chrono::milliseconds(50);
+  SqliteBed bed(options);
+  const std::string name = HexOf(Sha256("content"));
+  const auto while_another_writes = [&] {
+    EXPECT_TRUE(ComesToRest());
+    sqlite::Database other =
+        Must(sqlite::Database::Open(bed.path(), sqlite::Database::Access::kReadWrite, {}));
+    Must(other.Execute("BEGIN IMMEDIATE"));
+    const auto expired = CodeOf(bed.store().Expire(PolicyOfTests()));
+    Must(other.Execute("ROLLBACK"));
+    return expired;
+  };
+  const auto writer = Must(bed.store().WriteBlob(name, 7));
+  Must(writer->Append("content"));
+  Must(writer->Finish(std::chrono::hours(1)));
+  EXPECT_EQ(while_another_writes(), std::nullopt);  // nothing is due
+  bed.clock().Advance(std::chrono::hours(1));
+  EXPECT_EQ(while_another_writes(), ErrorCode::kCellStoreBusy);
+  Must(bed.store().Expire(PolicyOfTests()));
+  EXPECT_TRUE(
+      Eventually([&] { return CodeOf(bed.store().ReadBlob(name)) == ErrorCode::kCellNotFound; }));
+  const WallTime later = bed.clock().Now() + std::chrono::hours(1);
+  Must(bed.store().SubmitAndWait({.kind = "CHECK", .not_before = later}));
+  bed.clock().Advance(std::chrono::hours(1));
+  EXPECT_EQ(while_another_writes(), ErrorCode::kCellStoreBusy);
+  Must(bed.store().Expire(PolicyOfTests()));
+  EXPECT_TRUE(Must(bed.store().Acquire("w", {"CHECK"}, kLease, {})));
+}
+
 // A RUN that is over lets the next one of its machine begin; the end of another job lets nothing
 // begin, and nobody who waits is tried.
 TEST(SqliteStanding, TheEndOfARunIsWaitedFor) {

@@ -10,10 +10,6 @@ namespace {
 
 constexpr double kCollinear_mm = kArcPointTolerance_mm;
 
-bool IsFinite(const MachinePoint& p) {
-  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
-}
-
 }  // namespace
 
 PathPiece PathPiece::Line(const TipPose& from, const TipPose& to) {
@@ -48,7 +44,7 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Machine
   const MachineVector b = to.tip - from.tip;
   const double chord = b.norm();
   const double to_via = a.norm();
-  if (!std::isfinite(chord) || !std::isfinite(to_via) || !IsFinite(from.tip)) {
+  if (!std::isfinite(chord) || !std::isfinite(to_via)) {
     return Error{ErrorCode::kCellArcUndefined, "a coordinate is not a number", {}};
   }
   if (chord <= kArcPointTolerance_mm) {

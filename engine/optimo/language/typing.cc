@@ -241,14 +241,11 @@ bool Typing::Type(std::uint32_t expression, Wanted wanted) {
     return HasType(leaf, wanted);
   }
   stack_.clear();
-  bool good = true;
   for (std::size_t at = range.first; at < range.first + range.count; ++at) {
     const Node op = module_.nodes[at].op;
     const int arity = Arity(op);
     if (arity == 0) {
-      const Operand operand = TypeLeaf(at);
-      good = good && !operand.unknown;
-      stack_.push_back(operand);
+      stack_.push_back(TypeLeaf(at));
       if (stack_.size() > kOperandStackMax) {
         Report(ErrorCode::kSyntax, at, "the expression has too many pending operands; split it",
                {});
@@ -268,17 +265,14 @@ bool Typing::Type(std::uint32_t expression, Wanted wanted) {
       stack_.pop_back();
     }
     result.type = module_.nodes[at].type;
-    good = good && !result.unknown;
     stack_.push_back(result);
   }
-  return HasType(stack_.back(), wanted) && good;
+  return HasType(stack_.back(), wanted);
 }
 
 bool Typing::ResolveTarget(std::uint32_t expression) {
   const std::size_t at = module_.FirstNode(expression);
-  const bool reads = reads_machine_;
   if (!ResolveNode(at, Use::kTarget)) return false;
-  reads_machine_ = reads;  // writing is not reading
   ExprNode& node = module_.nodes[at];
   if (node.op != Node::kVariable) {
     Report(ErrorCode::kConstantAssigned, at,

@@ -145,6 +145,10 @@ void Compensator::Pass(const Instruction& i) {
     case Op::kSysdef:
       PassSysdef(i);
       break;
+    case Op::kZero:  // it moves, to where the machine says
+      head_a_at_.reset();
+      head_b_at_.reset();
+      [[fallthrough]];
     case Op::kTcp:
       FinishChain();
       at_.reset();

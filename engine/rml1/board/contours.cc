@@ -97,7 +97,6 @@ class Tracer {
 }  // namespace
 
 std::vector<Loop> ContoursAt(const DistanceField& field, double level) {
-  if (field.values.empty()) return {};
   return Tracer(field, level).All();
 }
 

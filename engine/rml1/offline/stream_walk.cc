@@ -127,7 +127,7 @@ void StreamWalk::OnListEnd(std::int64_t offset) {
       Complete(Phrase::Kind::kSkipped, offset);
       break;
     case Shape::kSets:
-      if (value_count_ > 0 || dropped_) {
+      if (value_count_ > 0) {
         Complete(Phrase::Kind::kLeftOver, offset);
       } else if (!ran_) {
         Complete(Phrase::Kind::kBare, offset);

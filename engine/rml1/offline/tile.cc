@@ -22,10 +22,12 @@ class BodyFinder final : public PhraseListener {
   bool OnPhrase(const Phrase& phrase) override {
     bool works = false;
     bool travels = false;
+    bool moves = false;
     bool rises_only = true;
     Point at = phrase.physical_before;
     for (const Action& action : phrase.actions) {
       if (action.kind != Action::Kind::kMotion) continue;
+      moves = true;
       const bool across = action.to.x != at.x || action.to.y != at.y;
       travels = travels || across;
       rises_only = rises_only && !across && action.to.z > at.z;
@@ -47,8 +49,8 @@ class BodyFinder final : public PhraseListener {
       from_ = command_from_;
     }
     const bool same_command = phrase.command != 0 && phrase.command == last_command_;
-    const bool lift = lifting_ && rises_only && !phrase.actions.empty() && phrase.findings.empty();
-    if (works || (begun_ && (same_command || lift))) {
+    const bool lift = lifting_ && moves && rises_only && phrase.findings.empty();
+    if (works || lift || (begun_ && same_command)) {
       lifting_ = true;
       last_command_ = phrase.command;
       part_.end = phrase.end;

@@ -16,7 +16,8 @@ class ParallelFor {
   virtual std::size_t width() const = 0;
 
   // Calls `piece` with each number below `count` and returns when all have returned. What one of
-  // them throws is thrown here then. From one thread at a time, and not from a piece.
+  // them throws is thrown here when those under way have returned; the others may be left out. From
+  // one thread at a time, and not from a piece.
   virtual void Run(std::size_t count, const std::function<void(std::size_t)>& piece) = 0;
 };
 

@@ -113,7 +113,6 @@ bool ToolSweep::ToNextRow() {
   column_ = static_cast<std::size_t>(columns_.begin[k]);
   end_ = std::max(column_, static_cast<std::size_t>(columns_.end[k]));
   level_begin_ = level_end_ = end_;
-  if (surface_ == Surface::kLevel) level_begin_ = column_;
   if (stood_) {
     level_begin_ = std::clamp(static_cast<std::size_t>(level_columns_.begin[k]), column_, end_);
     level_end_ = std::clamp(static_cast<std::size_t>(level_columns_.end[k]), level_begin_, end_);

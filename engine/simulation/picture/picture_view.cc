@@ -145,13 +145,10 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
     double columns[2] = {0.0, 0.0};
     double rows[2] = {0.0, 0.0};
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      const bool axial = !frames[k].across.empty();
-      if (axial || columns[k % 2] == 0.0) {
-        columns[k % 2] = std::max(columns[k % 2], axial ? extents[k].width() : 0.0);
-      }
-      if (axial) rows[k / 2] = std::max(rows[k / 2], extents[k].height());
+      if (frames[k].across.empty()) continue;  // views in space need nothing in particular
+      columns[k % 2] = std::max(columns[k % 2], extents[k].width());
+      rows[k / 2] = std::max(rows[k / 2], extents[k].height());
     }
-    // Views in space alone need nothing in particular.
     const double largest = std::max({columns[0], columns[1], rows[0], rows[1], kSmallest_mm});
     for (double& side : columns) side = std::max(side, kThinnest * largest);
     const auto [first, second] = Share(area.width - kGap_px, columns[0], columns[1]);

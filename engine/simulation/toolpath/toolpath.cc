@@ -73,11 +73,9 @@ bool NeedsTimes(const ToolpathBlock& block, const ToolpathRun& run) {
 }
 
 bool TurnsIn(const ToolpathBlock& block, const ToolpathRun& run, const ToolpathPoint& before) {
-  const ToolpathPoint* last = &before;
   for (std::uint32_t k = 0; k < run.point_count; ++k) {
     const ToolpathPoint& point = block.points[run.first_point + k];
-    if (point.a_urad != last->a_urad || point.b_urad != last->b_urad) return true;
-    last = &point;
+    if (point.a_urad != before.a_urad || point.b_urad != before.b_urad) return true;
   }
   return false;
 }

@@ -69,7 +69,7 @@ bool ToolpathWriter::Add(const ToolpathPoint& point, std::int64_t at_us) {
 }
 
 void ToolpathWriter::EndAt(std::int64_t at_us) {
-  if (!open_ || closed_) return;
+  if (!open_) return;
   block_.runs.back().end_us = at_us;
   if (block_.runs.back().point_count > 1) block_.reached_us.back() = at_us;
 }

@@ -61,6 +61,16 @@ TEST(ScreenMarks, OneNoteStandsBelowTheButtons) {
   EXPECT_EQ(note(), "  OPT-E12");
 }
 
+// A letter of another language is as wide as any other: eighty of them are a line.
+TEST(ScreenMarks, ALineHasEightyLettersOfAnyLanguage) {
+  HandboxView view;
+  view.marks = false;
+  std::string letters;
+  for (int k = 0; k < 78; ++k) letters += "ü";
+  view.note = letters + "üü";
+  EXPECT_EQ(HandboxLines(view).at(22), "  " + letters);
+}
+
 TEST(ScreenMarks, ATerminalWithoutRoomIsToldWhatFits) {
   HandboxView view;
   view.rows = 3;

@@ -90,6 +90,24 @@ TEST_F(ToldRuns, WhatIsOnlyCountedIsToldOnce) {
   EXPECT_THAT(told.output, Not(HasSubstr(" more finding")));
 }
 
+// Of a run that ends before its text does, what the text counts more of is not told again either.
+TEST_F(ToldRuns, WhatARunCountsLessOfIsToldOnce) {
+  std::string stream = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;\n";
+  for (int line = 0; line < 1500; ++line) stream += "PU1,1;PU2,2;PU3,3;QQ;\n";
+  SimulateOptions options = Of("a.rml", stream + "PU0,0;!MC0;\n");
+  options.machine.profile = "srm-20";
+  options.budget = "steps=4400";
+  const Told told = Run(options);
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.output, HasSubstr("\noutcome       budget exceeded"));
+  // Five of the kind are shown, each with its place, and the others counted in one line.
+  std::size_t shown = 0;
+  for (std::size_t at = 0; (at = told.output.find("RML1-E1: ", at)) != std::string::npos; ++at)
+    ++shown;
+  EXPECT_EQ(shown, 5U) << told.output;
+  EXPECT_THAT(told.output, HasSubstr("\nand 1495 more RML1-E1, lines 7 to 1501\n"));
+}
+
 // Slices of ten seconds; every sixteenth is told, with one decimal.
 TEST_F(ToldRuns, ALongRunSaysHowFarItIs) {
   const SimulateOptions options = Of("a.S", "DELAY 99.\nDELAY 99.\n");

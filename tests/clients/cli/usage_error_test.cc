@@ -112,5 +112,18 @@ TEST(UsageText, AValueThatIsNoneIsShown) {
             "--kind: 'chek' is none of check, run; did you mean check? (rmlcell simulate --help)");
 }
 
+// What the library says in other words than those is passed on as it is.
+TEST(UsageText, OtherWordsOfTheLibraryStay) {
+  const CLI::App app("", "rmlcell");
+  const auto said = [&app](const CLI::Error& error) { return UsageText(app, error); };
+  EXPECT_EQ(said(CLI::ConversionError("--json: too many inputs for a flag")),
+            "--json: too many inputs for a flag (rmlcell --help)");
+  EXPECT_EQ(said(CLI::ValidationError("--kind", "odd}")), "--kind: odd} (rmlcell --help)");
+  EXPECT_EQ(said(CLI::ValidationError("--kind", "odd not in {check} here")),
+            "--kind: odd not in {check} here (rmlcell --help)");
+  EXPECT_EQ(said(CLI::ValidationError("odd not in {check}")),
+            "odd not in {check} (rmlcell --help)");
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

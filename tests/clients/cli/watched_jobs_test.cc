@@ -103,6 +103,24 @@ TEST_F(WatchedJobs, ProductsOfABlockHaveTheirNames) {
     EXPECT_EQ(asked(product), product + " ");
 }
 
+// What happens is told on a line of its own: the bar is taken away before, and drawn again behind.
+TEST_F(WatchedJobs, TheBarGivesWayToEachEvent) {
+  v1::WatchJobResponse at;
+  at.mutable_progress()->set_progress(0.5);
+  jobs.connections = {
+      {{at, EventOf(1, "one"), at, End(2, v1::Outcome::KIND_FAILED, v1::VERDICT_BAD)}, {}}};
+  const std::string shown = OnErrors([&] {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(WatchJob(server.remote(), "17", 0, false), 1);
+    testing::internal::GetCapturedStdout();
+  });
+  // Each time that it is drawn, too, what stood there goes.
+  std::size_t cleared = 0;
+  for (std::size_t from = 0; (from = shown.find("\r\x1b[K", from)) != std::string::npos; from += 4)
+    ++cleared;
+  EXPECT_EQ(cleared, 4U) << shown;
+}
+
 using WordsOfTheMachine = MachineWords;
 
 // How long a machine goes on nobody knows: a block that wanders, and no share.

@@ -118,6 +118,16 @@ TEST(Navigation, ReferencesOfAProgramAreNotThoseOfItsOtherForms) {
             (Strings{"12.S 0:5", "13.S 0:5", "14.SI 0:5"}));
 }
 
+// The text that is open is one of its folder, in whatever escapes its address is written there.
+TEST(Navigation, ReferencesOfAProgramAreToldOnce) {
+  Editor editor;
+  editor.folder.files["file:///work/%31%32.S"] = "CALL 44 ; on the disk, older\n";
+  editor.folder.files["file:///work/13.S"] = "CALL 44\n";
+  EXPECT_EQ(ReferencesOf("\nCALL 4|4\n", true, editor), (Strings{"12.S 1:5", "13.S 0:5"}));
+  // A name that stands for no program leads to none.
+  EXPECT_EQ(DefinitionOf("CALL NO|NE\n", editor), Strings{});
+}
+
 TEST(Navigation, HighlightsTellWritingFromReading) {
   Editor editor;
   const Json found =

@@ -328,6 +328,14 @@ TEST_F(Stdio, AWireThatNeverWaitedStaysSo) {
   EXPECT_EQ(::fcntl(wires_.output(), F_GETFL), before);
 }
 
+// A folder can be opened, and nothing can be read of it.
+TEST_F(Stdio, AnInputThatCannotBeReadEndsIt) {
+  const int folder = ::open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_GE(folder, 0);
+  EXPECT_EQ(RunOnDescriptors(folder, wires_.output()), 1);
+  ::close(folder);
+}
+
 class StdioOnASocket : public Stdio {
  protected:
   StdioOnASocket() : Stdio(Wires::Kind::kSocket) {}

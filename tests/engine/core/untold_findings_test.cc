@@ -149,6 +149,19 @@ TEST(UntoldFindings, AnErrorIsNotHiddenByAdvice) {
   EXPECT_EQ(other.kinds().at(ErrorCode::kRml1Clipped).severity, Severity::kProgram);
 }
 
+// Of what is no error the more serious is not hidden by what comes later, either way of adding.
+TEST(UntoldFindings, AWarningIsNotHiddenByAdvice) {
+  Diagnostic warning = At(ErrorCode::kRml1Clipped, 1);
+  warning.severity = Severity::kWarning;
+  UntoldFindings untold;
+  untold.Add(warning);
+  untold.Add(At(ErrorCode::kRml1Clipped, 2));
+  EXPECT_EQ(untold.kinds().at(ErrorCode::kRml1Clipped).severity, Severity::kWarning);
+  untold.Add(Untold(1, ErrorCode::kRml1Clipped, 3));
+  EXPECT_EQ(untold.kinds().at(ErrorCode::kRml1Clipped).severity, Severity::kWarning);
+  EXPECT_EQ(untold.count(), 3U);
+}
+
 TEST(UntoldFindings, AreMarkedAndPlacedAsFindingsAre) {
   UntoldFindings untold = Untold(2, ErrorCode::kRml1Clipped);
   untold.Add(Untold(1, ErrorCode::kRml1LogCut));

@@ -62,6 +62,44 @@ TEST_F(HandboxMemory, WhatIsShownIsReadAgain) {
   EXPECT_EQ(Shown().instruction, "");
 }
 
+// LIVE-7.02: beside a run that is held, and while ZERO moves the axes, as well.
+TEST_F(HandboxMemory, WhatIsShownBesideARunIsReadAgain) {
+  Load({"DELAY 5\nDELAY 5\n", "DELAY 1\nDELAY 2\n"});
+  Start();
+  GoOn(At(1.0));
+  Good(ChangeMode{Mode::kManual});
+  GoOn(At(7.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Keys({"JOB", "0", "2", "NEXT", "2", "ENT"});
+  ASSERT_EQ(Shown(), (ShownStep{.program = 2, .step = 2, .instruction = "DELAY"}));
+  Good(StoreProgram{.slot = 2, .program = Translated("DELAY 1\nSPEED 5\n")});
+  EXPECT_EQ(Shown(), (ShownStep{.program = 2, .step = 2, .instruction = "SPEED"}));
+  Load({"DELAY 1\nDELAY 2\n"});
+  Good(ChangeMode{Mode::kManual});
+  Keys({"JOB", "0", "1", "NEXT", "2", "ENT"});
+  Good(ZeroAxes{});
+  ASSERT_EQ(state(), MachineState::kJogging);
+  Good(StoreProgram{.slot = 1, .program = Translated("DELAY 1\nSPEED 5\n")});
+  EXPECT_EQ(Shown(), (ShownStep{.program = 1, .step = 2, .instruction = "SPEED"}));
+}
+
+// LIVE-5.04, LIVE-7.02: where a job is in the program that is selected is not what is selected: the
+// step stays the one that a person chose, and is read again when the program is stored meanwhile.
+TEST_F(HandboxMemory, WhereAJobIsIsNotSelected) {
+  Load({"DELAY 3\nDELAY 4\n"});
+  Good(ChangeMode{Mode::kManual});
+  Keys({"JOB", "0", "1", "NEXT", "2", "ENT"});
+  ASSERT_EQ(Shown(), (ShownStep{.program = 1, .step = 2, .instruction = "DELAY"}));
+  Good(ChangeMode{Mode::kRemote});
+  Good(StartRun{.program = 1, .source = StartSource::kQueue});
+  GoOn(At(1.0));
+  ASSERT_EQ(Shown().step, 1);
+  Good(StoreProgram{.slot = 1, .program = Translated("DELAY 3\nSPEED 5\n")});
+  GoOn(At(30.0));
+  ASSERT_EQ(state(), MachineState::kIdle);
+  EXPECT_EQ(Shown(), (ShownStep{.program = 1, .step = 2, .instruction = "SPEED"}));
+}
+
 // OPT-4.63: a program that runs, or that called the one that does, is not deleted by a key either.
 TEST_F(HandboxMemory, WhatARunIsInIsNotDeletedByAKey) {
   Load({"CALL 2\n", "CALL 3\n", "DELAY 5\n", "DELAY 1\n"});

@@ -1,6 +1,7 @@
 // The keys of a mill's panel: VIEW, SPINDLE, Z0, ORIGIN, HOME, and the step of its jog keys.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <random>
 
 #include "tests/engine/machine/machine_bed.h"
@@ -92,9 +93,16 @@ TEST_F(MillPanelTest, ViewTakesTheToolAwayAndBack) {
   ToRest();
   EXPECT_EQ(state(), MachineState::kIdle);
   ExpectAt({0.0, 152.4, 0.0});
+  // As it came: across at the top, and down over its place alone.
   Good(kPressView);
   EXPECT_EQ(state(), MachineState::kJogging);
-  ToRest();
+  for (int n = 0; n < 1000 && MovesAxes(state()); ++n) {
+    GoOnFor(0.1);
+    const motion::MachineVector left = machine->status().run.axes.column - kAway;
+    if (std::hypot(left.x(), left.y()) > 1e-6) {
+      EXPECT_NEAR(left.z(), 10.0, 1e-9) << n;
+    }
+  }
   ExpectAt(kAway);
   EXPECT_TRUE(machine->TakeRunsOver().empty());
 }
@@ -249,6 +257,19 @@ TEST_F(MillPanelTest, AnOpenCoverPauses) {
   Good(MoveDoor{true});
   EXPECT_THAT(Refused(StartRun{.program = 1}), HasSubstr("CELL-E9433"));
   EXPECT_THAT(Refused(StartAtStep{.program = 1}), HasSubstr("CELL-E9433"));
+}
+
+// DEV-3.12: it is its opening that acts: a cover that is told to be closed, and was, stops nothing.
+TEST_F(MillPanelTest, AClosedCoverThatClosesStopsNothing) {
+  for (const char* cover : {"PAUSE", "EMERGENCY"}) {
+    LoadWith({{"COVER", cover}}, {}, "PA;VS10;PU1000,1000;PU2000,2000;");
+    Good(StartRun{.program = 1});
+    GoOnFor(1.0);
+    Good(MoveDoor{false});
+    EXPECT_EQ(state(), MachineState::kRunning) << cover;
+    GoOnFor(100.0);
+    EXPECT_EQ(Over().outcome.kind, OutcomeKind::kCompleted) << cover;
+  }
 }
 
 // DEV-3.12: one whose cover is none runs on.

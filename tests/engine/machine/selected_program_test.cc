@@ -160,6 +160,15 @@ TEST_F(SelectedProgram, ResumeFromAfarLosesNoPart) {
     GoOn(machine->time() + At(3.0));
     ASSERT_EQ(state(), MachineState::kHeld);
   };
+  // Where no beam is due it goes on.
+  Load({"DELAY 5\nDELAY 5\n"});
+  Start();
+  GoOn(At(1.0));
+  Good(MoveDoor{.open = true});
+  GoOn(At(2.0));
+  ASSERT_EQ(state(), MachineState::kHeld);
+  Good(ResumeRun{.source = StartSource::kConsole});
+  EXPECT_EQ(state(), MachineState::kRunning);
   hold();
   EXPECT_THAT(Refused(ResumeRun{.source = StartSource::kConsole}), HasSubstr("OPT-E7410"));
   EXPECT_EQ(state(), MachineState::kHeld);
@@ -179,6 +188,7 @@ TEST_F(SelectedProgram, WhatIsSelectedInAHold) {
     ASSERT_EQ(state(), MachineState::kHeld);
     for (const char* key : {"JOB", "0", "2", "ENT"}) ASSERT_TRUE(machine->PressKey(key)) << key;
     EXPECT_EQ(machine->selected_program(), 2);
+    EXPECT_EQ(machine->panel().display, "P=02S=0000I=********");
   };
   hold_and_select();
   ASSERT_TRUE(machine->PressKey("START"));
@@ -192,6 +202,46 @@ TEST_F(SelectedProgram, WhatIsSelectedInAHold) {
   Good(AbortRun{});
   Over();
   EXPECT_EQ(machine->selected_program(), 2);
+}
+
+// OPT-B.63, OPT-7.70: runs are counted from the selection of their program on, be it the same one
+// again. What is selected beside a run that is held counts from its end, unless START goes on with
+// the run.
+TEST_F(SelectedProgram, RunsAreCountedFromTheSelectionOn) {
+  Load({"DELAY 1\n", "DELAY 10\n"});
+  Good(ChangeMode{Mode::kCycle});
+  const auto tap = [&](const std::vector<std::string_view>& keys) {
+    for (const std::string_view key : keys) ASSERT_TRUE(machine->PressKey(key)) << key;
+  };
+  const auto go_on_for = [&](double seconds) { GoOn(machine->time() + At(seconds)); };
+  tap({"JOB", "0", "1", "ENT"});
+  for (const char* runs : {"1", "2"}) {
+    tap({"START"});
+    go_on_for(5.0);
+    EXPECT_EQ(Value("VI[98]"), runs);
+  }
+  tap({"JOB", "0", "1", "ENT"});
+  EXPECT_EQ(Value("VI[98]"), "0");
+  tap({"JOB", "0", "2", "ENT", "START"});
+  go_on_for(1.0);
+  tap({"STOP"});
+  go_on_for(1.0);
+  ASSERT_EQ(state(), MachineState::kHeld);
+  tap({"JOB", "0", "1", "ENT"});
+  EXPECT_EQ(Value("VI[98]"), "1");
+  tap({"START"});
+  go_on_for(30.0);
+  ASSERT_EQ(state(), MachineState::kIdle);
+  EXPECT_EQ(Value("VI[98]"), "1");
+  tap({"START"});
+  go_on_for(1.0);
+  tap({"STOP"});
+  go_on_for(1.0);
+  tap({"JOB", "0", "1", "ENT"});
+  EXPECT_EQ(Value("VI[98]"), "2");
+  Good(AbortRun{});
+  EXPECT_EQ(state(), MachineState::kIdle);
+  EXPECT_EQ(Value("VI[98]"), "0");
 }
 
 // LIVE-5.04, OPT-1.11: what a job brings is not in the memory: the executable that is made of it is

@@ -428,6 +428,19 @@ TEST_F(StartAt, StartsDirectly) {
                                          "0.600 rad"));
 }
 
+// LIVE-6.06: the axes by themselves are no curve, and one that comes behind them is none of theirs;
+// where nothing moves any more nothing speaks against it.
+TEST_F(StartAt, StartsDirectlyWithTheAxesByThemselves) {
+  const RunSetup setup =
+      Setup({"COORD ABSOL\nPATH LIN\nMOVE (500.,2200.,-350.,0.,0.)\nPATH PTP\n"
+             "MOVE (560.,2200.,-350.,0.,0.)\nPATH CIR\n"
+             "MOVE (620.,2200.,-350.,0.,0.)/VIA (590.,2230.,-350.,0.,0.)\nVI[1]=1\n"});
+  for (const int step : {4, 5, 8}) {
+    const StartPreview preview = PreviewOf(setup, {.at = {1, step}}, false, ApproachWay::kDirect);
+    EXPECT_EQ(FirstRefusal(preview), "none") << step;
+  }
+}
+
 // LIVE-6.01: of a run that was cut off: the values that it had, and the inputs of now.
 TEST_F(StartAt, WithTheBaseOfAnInterruptedRun) {
   Observe({"WAIT IL[5]\nVR[3]=VR[3]+1.\nDELAY 1\nVL[1]=IL[5]\nVI[9]=1\n"});

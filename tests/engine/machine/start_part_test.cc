@@ -166,6 +166,16 @@ TEST_F(StartPart, WithoutABeamNoCutIsMissing) {
   EXPECT_NEAR(missing(9), 40.0, 1e-3);
 }
 
+// LIVE-6.04: what is missing goes on until the beam is off: an output that is switched off
+// meanwhile ends nothing.
+TEST_F(StartPart, TheMissingCutEndsWithItsBeam) {
+  const RunSetup setup = Setup(
+      {"COORD ABSOL\nPATH LIN\nSPEED 20\nWORKDEF 1,0 (8.,75.,.2,50.)\nOL[11]=ON\n"
+       "MOVE (521.02, 2201.2, -350., 0., 0.)\nWORK 1,0/ON\nMOVE (561.02, 2201.2, -350., 0., 0.)\n"
+       "OL[11]=OFF\nMOVE (601.02, 2201.2, -350., 0., 0.)\nWORK 1,0/OFF\nVI[1]=1\n"});
+  EXPECT_NEAR(PreviewOf(setup, {.at = {1, 8}}).missing_cut_mm, 80.0, 1e-3);
+}
+
 // The run that came to a step goes on by itself: nobody looks at its steps any more.
 TEST_F(StartPart, TheRunThatCameThereGoesOn) {
   const RunSetup setup = Setup({kFarMove});

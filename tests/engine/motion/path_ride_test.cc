@@ -359,6 +359,20 @@ TEST(PathRide, WhatIsPlannedInTheAxesIsMeasuredAnew) {
   EXPECT_EQ(std::get<PlannedMotion>(ride.to_come()[1]).path.length(), 2.0);
 }
 
+// Nor is what is under way by its tip.
+TEST(PathRide, WhatIsUnderWayByItsTipKeepsItsMeasure) {
+  PathRide ride(HoldRamp::kStays);
+  const PlannedMotion by_tip = StraightOn()[0];
+  ride.Plan(by_tip);
+  ride.Begin(kBegin);
+  ride.MeasureInAxesBy(0.5);
+  ASSERT_NE(ride.under_way(), nullptr);
+  const PlannedMotion& motion = ride.under_way()->motion;
+  EXPECT_EQ(motion.path.length(), by_tip.path.length());
+  EXPECT_EQ(motion.limits.speed, by_tip.limits.speed);
+  EXPECT_EQ(motion.speed.duration_s(), by_tip.speed.duration_s());
+}
+
 TEST(PathRide, FinishLeavesNothingToRide) {
   const std::vector<PlannedMotion> motions = StraightOn();
   PathRide ride = RideOver(motions);

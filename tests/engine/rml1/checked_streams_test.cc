@@ -173,12 +173,17 @@ TEST(CheckedStreams, ACheckReleasesWhatItHasRead) {
   EXPECT_TRUE(CheckedOnT1(stream).ok);
 }
 
-// Nor what a run has read, which says so once, however often it is asked to go on behind that.
-TEST(CheckedStreams, ARunReleasesWhatItHasRead) {
+// A pause behind two such parts.
+std::string LongStreamWithAPause() {
   std::string stream = "PA;!MC0;";
   while (stream.size() < 2 * machine::kReleaseEvery)
     stream += "PU1,1;;;;;;;;;;;;;;;;;;;;;;;;;;;\nPU2,2;;;;;;;;;;;;;;;;;;;;;;;;;;;\n";
-  stream += "!NR;PU3,3;";
+  return stream + "!NR;PU3,3;";
+}
+
+// Nor what a run has read, which says so once, however often it is asked to go on behind that.
+TEST(CheckedStreams, ARunReleasesWhatItHasRead) {
+  const std::string stream = LongStreamWithAPause();
   const auto keeper = std::make_shared<const CountedReleases>();
   machine::RunSetup setup = SetupOf(ParametersOf("t1"), {});
   setup.programs[1].object = machine::Bytes(keeper, stream);
@@ -192,6 +197,28 @@ TEST(CheckedStreams, ARunReleasesWhatItHasRead) {
   EXPECT_LE(released, 2);
   for (int call = 0; call < 5; ++call) run->Advance(kForever);
   EXPECT_EQ(keeper->count, released);
+}
+
+// A run that is put back to its beginning reads all of it once more, and says so as often again.
+TEST(CheckedStreams, ARunThatIsPutBackReleasesAnew) {
+  const std::string stream = LongStreamWithAPause();
+  const auto keeper = std::make_shared<const CountedReleases>();
+  machine::RunSetup setup = SetupOf(ParametersOf("t1"), {});
+  setup.programs[1].object = machine::Bytes(keeper, stream);
+  machine::RunObserver silent;
+  const auto run = Rml1Family().NewRun(std::move(setup), silent).value();
+  const auto beginning = run->Save();
+  const auto to_the_pause = [&run] {
+    while (run->Advance(kForever) == machine::RunPhase::kRunning) {
+    }
+    return run->Advance(kForever);
+  };
+  ASSERT_EQ(to_the_pause(), machine::RunPhase::kHalted);
+  const int released = keeper->count;
+  EXPECT_GE(released, 1);
+  run->Restore(*beginning);
+  ASSERT_EQ(to_the_pause(), machine::RunPhase::kHalted);
+  EXPECT_EQ(keeper->count, 2 * released);
 }
 
 // figures.h: nor what is read once more to tell the lines of places: a way through the work without

@@ -101,6 +101,19 @@ TEST_F(WatchedWay, SteepWaysGoDown) {
   EXPECT_EQ(fast_plunge({.x = 1, .z = -2, .a = 10}), 0.0);
 }
 
+// Straight down is a way down also where A turns meanwhile.
+TEST_F(WatchedWay, StraightDownWhileATurns) {
+  Ride({.from = {.z = 5},
+        .to = {.z = -2, .a = 90},
+        .in_work = true,
+        .spindle_turns = true,
+        .plunge = true,
+        .speed_mm_s = kFast});
+  Cut(-2, 1.0);
+  EXPECT_NEAR(watch.fast_plunge().mm, 2.0, kNear);
+  EXPECT_EQ(watch.fast_plunge().first.number, 1U);
+}
+
 // A hole that is left at once: fast, unless something is cut as fast.
 TEST_F(WatchedWay, DownFastAndBackIsAFastPlungeWhereCutsAreSlower) {
   Plunge(5, -3, kFast);

@@ -309,5 +309,44 @@ TEST(EndedRuns, AMotionThatHasNotBegunIsNotTold) {
   EXPECT_NEAR(run.figures().at("dwell_time"), 0.25, 1e-9);
 }
 
+// The tool has been where it was stopped, and no further: 15 mm down, and 21 of 60 mm across.
+TEST(EndedRuns, ABoxEndsWhereTheToolWasStopped) {
+  for (const bool emergency : {true, false}) {
+    TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;");
+    run->Advance(FromSeconds(15.0 / 2.0 + 2.0 / 200.0 + 0.5));
+    if (emergency) {
+      run.Press(InputKind::kEmergencyStop);
+    } else {
+      run->End(OutcomeKind::kCancelled, ErrorCode::kCellCancelled);
+    }
+    EXPECT_NEAR(run->state().tip.tip.x(), 21.0, 1e-6);
+    EXPECT_NEAR(run.figures().at("box.xmax"), 2100.0, 1e-3);
+    EXPECT_NEAR(run.figures().at("box_mm.xmax"), 21.0, 1e-5);
+  }
+}
+
+// motion.md 6: another override while the tool brakes for a STOP counts from START on: the ramp
+// stays what it is, in one part.
+TEST(EndedRuns, AnOverrideInTheRampOfAStopWaits) {
+  const auto stopped = [](TestRun& run, bool overridden) {
+    run->Advance(11s);  // 20 mm down take some 10 s, 20 mm across 2 s
+    run.Press(InputKind::kStop);
+    run->Advance(11s + 20ms);  // of 50 ms
+    if (overridden) run.Press(InputKind::kOverride, 50.0);
+    return run.AdvanceToEnd();
+  };
+  const std::string stream = "!MC0;VS10;PD2000,0;";
+  TestRun plain(ParametersOf("t1"), stream);
+  ASSERT_EQ(stopped(plain, false), RunPhase::kHalted);
+  TestRun run(ParametersOf("t1"), stream);
+  ASSERT_EQ(stopped(run, true), RunPhase::kHalted);
+  EXPECT_EQ(run.seen().text(), plain.seen().text());
+  EXPECT_EQ(run.seen().motions().size(), plain.seen().motions().size());
+  EXPECT_EQ(run->state().tip, plain->state().tip);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run.seen().moves().back().feed_mm_s, 5.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

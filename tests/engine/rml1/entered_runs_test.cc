@@ -338,6 +338,39 @@ TEST(EnteredRuns, APauseBehindTheEntry) {
   EXPECT_EQ(run.seen().CountOf(ErrorCode::kRml1PausedAtEnd), 1);
 }
 
+// The same where the run that led there had a key of its own: the script begins anew, too.
+TEST(EnteredRuns, TheScriptBeginsAnew) {
+  const std::string stream = kTwoCuts + "!NR;PU100,0;";
+  TestRun there(WithRunUp(), stream,
+                {{.at = 1s, .kind = InputKind::kOverride, .index = 0, .value = 100.0}});
+  ASSERT_TRUE(there->enterable()->HaltBefore({.at = {1, kSecondCut}}));
+  ASSERT_EQ(there.AdvanceToEnd(), RunPhase::kHalted);
+  ASSERT_GT(there->state().time, SimTime(1s));
+  TestRun run(WithRunUp(), stream);
+  run->Restore(*there->Save());
+  run->enterable()->Enter({.machine_state = StandingNow()});
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_EQ(run.seen().Events().back(), "diagnostic RML1-E8006");
+  EXPECT_EQ(run.seen().CountOf(ErrorCode::kRml1PausedAtEnd), 1);
+}
+
+// LIVE-6.09: the way there takes its time from when it is begun, however long the run that led to
+// the command stood there.
+TEST(EnteredRuns, TheWayThereTakesItsTimeBehindAHalt) {
+  LedToTheCut there;
+  there->Stand(there->state().time + 20s);
+  EntryTold told;
+  const auto run = Rml1Family().NewRun(SetupOf(WithRunUp(), kTwoCuts), told).value();
+  run->Restore(*there->Save());
+  run->enterable()->Enter({.machine_state = StandingNow(), .halt_at_entry = true});
+  const SimTime begun = run->state().time;
+  EXPECT_EQ(begun, there->state().time);
+  ASSERT_EQ(AdvanceOn(*run), RunPhase::kHalted);
+  const double way_s = WayTime(kAcross_mm, 60) + 2.0 + WayTime(21, 10);
+  EXPECT_NEAR(ToSeconds(run->state().approached), way_s, 1e-7);
+  EXPECT_NEAR(ToSeconds(run->state().time - begun), way_s, 1e-7);
+}
+
 // step_entry.h: what is fitted to it, and where its zero is, a person sees to; it goes to its
 // place, switches its spindle, and is set to all the rest.
 TEST(MillItems, WhatIsDoneWithThem) {

@@ -293,6 +293,19 @@ TEST(MillRunFields, OfTheEndsThatABrakingToolPasses) {
   EXPECT_EQ(ride.corner.speed, 0.0);
 }
 
+// motion.md 7: the axes of a mill are where its tip is, also where A turns, and on the ramp of a
+// STOP.
+TEST(MillRunFields, OfTheHead) {
+  TestRun run(ParametersOf("t1a"), "!MC0;V20;VS10;PD1000,0;!ZE X2000A90;",
+              {{.at = 2s, .kind = InputKind::kStop}, {.at = 3s, .kind = InputKind::kStart}});
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  ASSERT_EQ(run.seen().Events().back(), "move 2000.0,0.0,0.0,90.0");
+  EXPECT_EQ(run.seen().moves().size(), 3U);
+  EXPECT_EQ(run.seen().motions().size(), 5U);  // down, the cut in three parts, the turn
+  for (const RunRecord::Motion& part : run.seen().motions())
+    EXPECT_TRUE(part.planned.head == motion::Head(motion::MillHead{}));
+}
+
 // What a watcher sees: halfway through a cut, standing, and when all is over.
 TEST(MillRunFields, OfTheState) {
   const std::string stream = "V20;VS10;PD1000,0;";

@@ -100,5 +100,20 @@ TEST(StandingMill, EachKeySetsWhatItSays) {
   EXPECT_NEAR((pressed(machine::PanelKey::kOrigin) - corner).norm(), 0.0, 1e-9);
 }
 
+// standing.h: it is at time 0, and no run goes on; a spindle that its last run left on turns until
+// it rests, and stays off then, where the tool stands.
+TEST(StandingMill, ASpindleThatWasLeftOnStopsWhereItRests) {
+  TestRun run(ParametersOf("t1"), "!MC1;PD1000,0;");
+  ASSERT_EQ(run.AdvanceToEnd(), machine::RunPhase::kFinished);
+  const auto mill = Rml1Family().NewStanding(ParametersOf("t1"), run->SaveMachine()).value();
+  EXPECT_EQ(mill->state().phase, machine::RunPhase::kFinished);
+  EXPECT_EQ(mill->state().time, SimTime::zero());
+  EXPECT_TRUE(mill->state().spindle_on);
+  mill->Rest();
+  EXPECT_FALSE(mill->state().spindle_on);
+  EXPECT_NE(mill->Save().find("\nspindle_on 0\n"), std::string::npos);
+  EXPECT_NEAR((mill->state().tip.tip - motion::MachinePoint(10.0, 0.0, -20.0)).norm(), 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

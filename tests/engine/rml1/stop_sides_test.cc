@@ -175,6 +175,26 @@ TEST(StopSides, ASpindleThatStartsAgainRunsUpWhole) {
   }
 }
 
+// Where as much of a dwell is left as the run-up lasts, it is the run-up that is waited for: 2 s of
+// it, 1 s of the dwell of 3 s, and 2 s of the run-up again. 20 mm down begin behind that.
+TEST(StopSides, ARunUpTakesThePlaceOfADwellAsLong) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("SPIN_UP", 2.0));
+  ASSERT_TRUE(parameters.Set("COVER", "PAUSE"));
+  TestRun run(parameters, "!MC1;W3000;PD;",
+              {{.at = FromSeconds(3.0), .kind = InputKind::kStop, .index = 0, .value = 0.0}});
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  run.Press(InputKind::kDoor, 1.0);
+  run.Press(InputKind::kDoor, 0.0);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "spindle wait 2.0"), 2);
+  EXPECT_EQ(std::ranges::count(run.seen().Events(), "dwell 1.0"), 1);
+  EXPECT_NEAR(run.figures().at("dwell_time"), 1.0, 1e-9);
+  EXPECT_NEAR(run.figures().at("spindle_time"), 4.0, 1e-9);
+  EXPECT_NEAR(run.seen().motions().at(0).start_s, 5.0, 1e-9);
+}
+
 // Of a stream of one byte nothing is read before it begins.
 TEST(StopSides, ProgressOfAStreamOfOneByte) {
   TestRun run(ParametersOf("t1"), ";");

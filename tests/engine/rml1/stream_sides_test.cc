@@ -74,7 +74,8 @@ TEST(StreamSeparators, OneCommaPartsTwoNumbers) {
         Separated{"PU ,100,200", 0, 0, 4}, Separated{"PU100,200,,300,400", 100, 200, 4},
         Separated{"PU100,200, ,300,400", 100, 200, 4}, Separated{"PU100,,200", 0, 0, 2},
         Separated{"PU100 , , 200", 0, 0, 2}, Separated{"Z100,200,-3  400,500,-6", 400, 500, 0},
-        Separated{"Z,100,200,-3", 0, 0, 6}}) {
+        Separated{"Z,100,200,-3", 0, 0, 6}, Separated{"PU100-200", 0, 0, 5},
+        Separated{"PU 100-200,300", 0, 0, 9}, Separated{"Z1 2-3", 0, 0, 3}}) {
     SidesDevice bytes("t1");
     bytes.ByteByByte(one.stream + behind);
     SidesDevice whole("t1");

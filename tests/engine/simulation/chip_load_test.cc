@@ -47,6 +47,7 @@ TEST(ChipLoad, TellsWhatIsWrongWithATable) {
     return read ? Detail() : read.error().detail;
   };
   EXPECT_EQ(fault(kTin, "source = 'measured'\n", ""), "chip_loads.toml:1: tin has no source");
+  EXPECT_EQ(fault(kTin, "'measured'", "''"), "chip_loads.toml:1: tin has no source");
   EXPECT_EQ(fault(kTin, "speed_most_m_min = 100", ""),
             "chip_loads.toml:1: tin has no speed_most_m_min above 0");
   const std::string share = "chip_loads.toml:1: tin has no plunge_share above 0 and up to 1";

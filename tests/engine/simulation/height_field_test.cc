@@ -289,6 +289,20 @@ TEST(HeightField, TellsHowDeepAShankWouldGo) {
   EXPECT_EQ(field.ShankDepthOf(held, {10, 6, 2}, {10, 6, -2.5}), 0.0);
 }
 
+// A shank of 6 mm above a tool of 3 mm that cuts for 2 mm, down by a quarter of the way. Beside the
+// tool the shank comes over a place for as long as it reaches there: over the last column of a
+// block of 10 mm, 7.875 mm on the way and 1.625 beside it, for sqrt(9 - 1.625^2) mm more. Before
+// the end it reaches where the tool never comes, and is no deeper there than at the end.
+TEST(HeightField, AWideShankReachesFurtherThanItsTool) {
+  const MillTool tool{.radius_mm = 1.5, .flute_mm = 2.0, .shank_radius_mm = 3.0};
+  const motion::MachinePoint from{2, 6, 0}, to{18, 6, -4};
+  Stock narrow = kPlate;
+  narrow.x_max = 10.0;
+  EXPECT_NEAR(Field(narrow).ShankDepthOf(tool, from, to),
+              0.25 * (7.875 + std::sqrt(9.0 - 1.625 * 1.625)) - 2.0, 1e-5);
+  EXPECT_NEAR(Field(kPlate).ShankDepthOf(tool, from, to), 2.0, 1e-5);
+}
+
 // How long the tool is over a point on a way across, and whether it is so at an end of the way.
 struct Stay {
   double length = 0.0;

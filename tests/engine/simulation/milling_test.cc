@@ -325,6 +325,18 @@ TEST(MilledPart, LessThanAMicrometreIsNoDepth) {
   EXPECT_NEAR(depth(-0.002), 0.002, 1e-6);
 }
 
+// What is cut off before the end of its first motion cut from where it began, and what is cut off
+// next from there on.
+TEST(MilledPart, WhatIsCutOffCutsFromWhereItStood) {
+  MilledPart part(kSlot);
+  part.BeginAt({0, 0, 0}, {5, 6, 5});
+  part.EndAt({5, 6, -2});
+  EXPECT_EQ(part.DepthOf({5, 6, -2}, {5, 6, -2}), 0.0);
+  EXPECT_NEAR(part.DepthOf({2.5, 3, -0.5}, {2.5, 3, -0.5}), 0.5, 1e-6);
+  part.EndAt({5, 10, -2});
+  EXPECT_EQ(part.DepthOf({5, 6, -2}, {5, 10, -2}), 0.0);
+}
+
 // For who looks on: the tiles in which something was taken off since, a radius beyond each end of
 // the way, also of what waits to be cut; a way above the block is none.
 TEST(MillingRecorder, TellsWhichTilesHaveChanged) {

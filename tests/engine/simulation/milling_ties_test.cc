@@ -1,6 +1,7 @@
 // Which of two equal ones counts, and what nobody told, in the figures of a mill in a block.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -66,6 +67,17 @@ TEST(MillingTies, WithoutASpeedOfTheSpindleThereIsNoChip) {
   mill.Spindle(0.5);
   mill.Go({2, 2, 4}, {18, 2, 4}, 8.0);
   EXPECT_NEAR(mill.Figures().chips->thick_percent, 100.0 * 480.0 / 0.05, 1e-6);
+}
+
+// Where nobody knows how much is usual straight down, no plunge is too much of it.
+TEST(MillingTies, APlungeIsNotJudgedByWhatNobodyKnows) {
+  Milling milling = TiedBlock();
+  milling.chips = ChipRange{.least_mm = 0.01, .most_mm = 0.05, .speed_most_m_min = 100.0};
+  TiedMilling mill(milling);
+  mill.Spindle(6000.0);
+  mill.Go({10, 6, 9}, {10, 6, 4}, 8.0, MotionUse::kPlunge);
+  EXPECT_EQ(mill.Figures().chips->plunge_percent, 0.0);
+  EXPECT_EQ(mill.Figures().chips->plunge_place.step, 0);
 }
 
 // What the spindle does by hand the program does not know, however slow that is.
@@ -229,6 +241,35 @@ TEST(MillingTies, AMoveAloneCountsInManyThreads) {
                      .programmed_mm_s = 8.0});
   EXPECT_EQ(recorder.Figures().deepest_pass_mm, 2.0);
   EXPECT_EQ(recorder.Figures().pass_place.step, 7);
+}
+
+// On the way down a shank as wide as its tool follows it; on the way up it comes first to what the
+// tool has not cut. Down by a quarter of the way through a block of 10 mm, over whose last column
+// the tool stands 8.125 mm behind the lower end: there the shank is sqrt(1.5^2 - 0.125^2) mm early,
+// whoever cuts.
+TEST(MillingTies, AShankIsToldByTheWayItGoes) {
+  Milling milling = TiedBlock();
+  milling.stock.x_max = 10.0;
+  milling.tool.flute_mm = 2.0;
+  milling.tool.shank_radius_mm = 1.5;
+  ThreadFor threads(3);
+  const auto shank = [&](const MachinePoint& from, const MachinePoint& to, ParallelFor* parallel) {
+    MillingRecorder recorder({}, milling, parallel);
+    motion::PlannedMotion planned;
+    planned.path = LineFrom(from, to);
+    recorder.OnMotion({.use = MotionUse::kCut,
+                       .motion = &planned,
+                       .travelled = planned.path.length(),
+                       .programmed_mm_s = 8.0});
+    return recorder.Figures().shank_depth_mm;
+  };
+  const MachinePoint high{2, 6, 5}, low{18, 6, 1};
+  const double early = std::sqrt(1.5 * 1.5 - 0.125 * 0.125);
+  for (ParallelFor* parallel :
+       {static_cast<ParallelFor*>(nullptr), static_cast<ParallelFor*>(&threads)}) {
+    EXPECT_EQ(shank(high, low, parallel), 0.0);
+    EXPECT_NEAR(shank(low, high, parallel), 2.0 - 0.25 * (8.125 - early), 1e-5);
+  }
 }
 
 // Nobody wants it any more: that is asked before the first triangle, however few there are.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "engine/families/families.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "tests/engine/simulation/fake_family.h"
@@ -59,6 +61,7 @@ TEST(MotionCheck, FindsEveryViolationWithItsPlace) {
   EXPECT_EQ(check.findings[1].step, 5);
   EXPECT_GT(*check.findings[1].at, SimTime(0));
   EXPECT_TRUE(check.cut_short.empty());
+  EXPECT_TRUE(check.reasons.empty());  // findings speak for themselves
 }
 
 // OPT-B.09: the SYSDEF of the caller brings the part into the travel; only alone would it leave it.
@@ -373,6 +376,15 @@ TEST(MotionCheck, AMissingProgramIsAnErrorOfAWholeMemory) {
             "GOOD");
 }
 
+// A failure comes when it comes: behind the two seconds that the program waits before it.
+TEST(MotionCheck, AFailureHasItsTime) {
+  const MotionCheck check =
+      Checked({{45, "COORD ABSOL\nDELAY 2.\nVR[1] = 5.\nVR[2] = VR[1] / (VR[1] - 5.)\n"}}, {45});
+  ASSERT_EQ(check.findings.size(), 1U);
+  EXPECT_EQ(check.findings[0].step, 4);
+  EXPECT_EQ(*check.findings[0].at, std::chrono::seconds(2));
+}
+
 // Of two errors of one program the first is told, and none as that of a program that it calls.
 TEST(MotionCheck, TheFirstErrorOfAProgramIsItsVerdict) {
   EXPECT_EQ(VerdictOfCheck("SYSDEF\nCOORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\nVR[1] = 5.\n"
@@ -405,6 +417,39 @@ TEST(MotionCheck, AMillHasNone) {
   machine::RunSetup setup{machine::Parameters(mill.parameters())};
   setup.programs[1].object = machine::Bytes::Of("PD;PA99999,0;");
   const auto check = CheckMotion(mill, setup, {1});
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(check->findings.empty());
+  EXPECT_TRUE(check->reasons.empty());
+  EXPECT_TRUE(check->cut_short.empty());
+}
+
+// A family whose translation tells all is not run: nobody says that it halts.
+TEST(MotionCheck, WhatIsNotCheckedByRunningIsNotRun) {
+  Script script;
+  script.Step(1, 1).Halt("STOP").Nothing(1.0);
+  for (const bool checked_by_running : {true, false}) {
+    const auto check =
+        CheckMotion(FakeFamily(script, checked_by_running), FakeFamily::Setup(), {1});
+    ASSERT_TRUE(check);
+    EXPECT_EQ(check->reasons.size(), checked_by_running ? 1U : 0U);
+  }
+}
+
+// What a day of a long run ends in the midst of is no halt.
+TEST(MotionCheck, ALongRunIsNoHalt) {
+  Script script;
+  script.Step(1, 1).Nothing(72'000.0).Nothing(72'000.0);
+  const auto check = CheckMotion(FakeFamily(script, true), FakeFamily::Setup(), {1});
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(check->reasons.empty());
+  EXPECT_TRUE(check->cut_short.empty());
+}
+
+// A run tells more than its motion: the family says which codes are about that, and this one none.
+TEST(MotionCheck, TellsWhatIsAboutTheMotionAlone) {
+  Script script;
+  script.Step(1, 4).Find(ErrorCode::kHoleRadiusZero, "radius is 0").Nothing(1.0);
+  const auto check = CheckMotion(FakeFamily(script, true), FakeFamily::Setup(), {1});
   ASSERT_TRUE(check);
   EXPECT_TRUE(check->findings.empty());
 }

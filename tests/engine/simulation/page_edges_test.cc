@@ -212,17 +212,24 @@ TEST(PlotEdges, NothingButZeroHasAScale) {
   EXPECT_TRUE(Has(svg, ">1.0<"));
 }
 
-// What goes up within one step of the plot does so on one straight line over that step.
-TEST(PlotEdges, ARiseIsAStraightLine) {
-  PlotRecorder recorder(Laser());
-  Script script;
-  script.Step(1, 1)
-      .Wait(machine::WaitKind::kPierce, 0.0002, true, 20.0)
-      .Wait(machine::WaitKind::kPierce, 0.0002, true, 80.0);
-  FakeRun run(script, recorder);
-  run.Advance(kForever);
+// A wait of so many microseconds, and the power of the beam meanwhile.
+struct ShortPierce {
+  int microseconds;
+  double power_percent;
+};
+
+// The curve of the power: its begin, and the step from each of its points to the next one.
+std::vector<double> PlottedPower(PlotRecorder& recorder, const std::vector<ShortPierce>& pierces) {
   RunReport report;
-  report.cycle_time = std::chrono::microseconds(400);
+  for (const ShortPierce& pierce : pierces) {
+    const SimTime end = report.cycle_time + std::chrono::microseconds(pierce.microseconds);
+    recorder.OnWait({.start = report.cycle_time,
+                     .end = end,
+                     .kind = machine::WaitKind::kPierce,
+                     .beam_on = true,
+                     .power_percent = pierce.power_percent});
+    report.cycle_time = end;
+  }
   const std::string svg = recorder.Svg(report, {.curves = {PlotCurve::kPower}});
   const std::size_t begin = svg.find("<path d=\"") + 9;
   const std::string data = svg.substr(begin, svg.find('"', begin) - begin);
@@ -233,12 +240,43 @@ TEST(PlotEdges, ARiseIsAStraightLine) {
     if (end != at) numbers.push_back(number);
     at = end != at ? end : at + 1;
   }
-  ASSERT_EQ(numbers.size(), 8u) << data;  // a begin, and three steps: level, up, level
-  EXPECT_EQ(numbers[3], 0.0);
-  EXPECT_LT(numbers[5], 0.0);
-  EXPECT_EQ(numbers[7], 0.0);
-  const double step_s = ToSeconds(recorder.Values(report.cycle_time).width());
-  EXPECT_NEAR(numbers[4] / (numbers[2] + numbers[4] + numbers[6]), step_s / 0.0004, 1e-3);
+  return numbers;
+}
+
+// What goes up, or down, within one step of the plot does so on one straight line over that step.
+TEST(PlotEdges, ARiseIsAStraightLine) {
+  for (const bool up : {true, false}) {
+    PlotRecorder recorder(Laser());
+    const std::vector<double> numbers =
+        PlottedPower(recorder, {{200, up ? 20.0 : 80.0}, {200, up ? 80.0 : 20.0}});
+    ASSERT_EQ(numbers.size(), 8u) << up;  // a begin, and three steps: level, up or down, level
+    EXPECT_EQ(numbers[3], 0.0);
+    EXPECT_EQ(numbers[5] < 0.0, up);
+    EXPECT_NE(numbers[5], 0.0);
+    EXPECT_EQ(numbers[7], 0.0);
+    const double step_s = ToSeconds(recorder.Values(std::chrono::microseconds(400)).width());
+    EXPECT_NEAR(numbers[4] / (numbers[2] + numbers[4] + numbers[6]), step_s / 0.0004, 1e-3);
+  }
+}
+
+// What is over within one step of the plot is back at the end of that step, however long nothing
+// happens behind it: up, or down, in the middle of the step.
+TEST(PlotEdges, APeakWithinAStepEndsWithIt) {
+  for (const bool up : {true, false}) {
+    PlotRecorder recorder(Laser());
+    const double level = up ? 20.0 : 80.0, peak = up ? 80.0 : 20.0;
+    const std::vector<double> numbers =
+        PlottedPower(recorder, {{20, level}, {10, peak}, {9'970, level}});
+    // A begin, nothing, the way there, the way back, and the rest.
+    ASSERT_EQ(numbers.size(), 10u) << up;
+    EXPECT_EQ(numbers[2], 0.0);
+    EXPECT_EQ(numbers[3], 0.0);
+    EXPECT_EQ(numbers[5] < 0.0, up);
+    EXPECT_NEAR(numbers[7], -numbers[5], 0.011);
+    EXPECT_NEAR(numbers[6], numbers[4], 0.021);
+    EXPECT_GT(numbers[8], 100.0 * numbers[6]);
+    EXPECT_EQ(numbers[9], 0.0);
+  }
 }
 
 // The beam is off in a wait without it, whatever power is set.

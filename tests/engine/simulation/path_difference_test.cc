@@ -90,6 +90,17 @@ TEST(PathDifference, PairsHaveALimit) {
   EXPECT_NEAR(cuts(4), 30.0, 1e-9);
 }
 
+// Once one element covers another, no more of those that lie there are looked at.
+TEST(PathDifference, WhatIsCoveredIsLookedAtOnce) {
+  Path thrice;
+  for (int k = 0; k < 3; ++k) thrice.Line({0, 0, 0}, {10, 0, 0});
+  for (const std::uint64_t pairs : {2U, 3U}) {
+    const PathDifference difference = Compare(thrice.sketch(), thrice.sketch(), pairs);
+    EXPECT_EQ(difference.exact, pairs == 3) << pairs;
+    EXPECT_NEAR(difference.common.cut_mm, 10.0 * static_cast<double>(pairs), 1e-9) << pairs;
+  }
+}
+
 // A line that became shorter at one end and longer at the other: 10 mm gone, 5 mm new, 40 mm kept.
 TEST(PathDifference, LinesAreDividedWhereTheyPart) {
   Path before, after;

@@ -133,6 +133,41 @@ TEST(PictureView, WhatIsShown) {
   expect(BoxToShow({}, {}, {}), {-0.003, -0.003, -0.003}, {0.003, 0.003, 0.003});
 }
 
+// A column is as wide as the widest of its views: X and Y of 100 and 300 mm in the left one, below
+// each other, and X in the right one share 936 px as 702 and 234.
+TEST(PictureView, AColumnHasRoomForEachOfItsViews) {
+  const PanelLayout layout = LayOut(
+      {FrameOf(PictureView::kXY, {}), FrameOf(PictureView::kXZ, {}), FrameOf(PictureView::kYZ, {})},
+      BoxBetween({0, 0, 0}, {100, 300, 50}), {0, 0, 1000, 0});
+  ASSERT_EQ(layout.panels.size(), 3u);
+  EXPECT_NEAR(layout.panels[0].rect.width, 702.0, 1e-9);
+  EXPECT_NEAR(layout.panels[1].rect.width, 234.0, 1e-9);
+  EXPECT_NEAR(layout.panels[2].rect.width, 702.0, 1e-9);
+  EXPECT_NEAR(layout.panels[0].rect.height, 648.0, 1e-9);  // 2.34 px a mm were 702
+  EXPECT_NEAR(layout.panels[2].rect.height, 230.0, 1e-9);
+}
+
+// What was lost is followed to its end where no travel is known, and where nothing was cut that it
+// could make a dot of.
+TEST(PictureView, LostWaysAreShownWhole) {
+  machine::Box travel;
+  travel.Add(motion::MachinePoint{0, 0, 0});
+  travel.Add(motion::MachinePoint{100, 80, 10});
+  for (const bool cuts : {true, false}) {
+    PathSketch sketch({}, 100);
+    motion::PlannedMotion planned;
+    planned.path = motion::PathPiece::Line({{0, 0, 0}}, {{100, 80, 0}});
+    sketch.Add({.use = cuts ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+                .motion = &planned,
+                .travelled = planned.path.length()});
+    sketch.AddLost({.from = {100, 80, 0}, .to = {5000, 80, 0}});
+    const machine::Box shown = BoxToShow(sketch, cuts ? machine::Box{} : travel);
+    // And 6 % of 5000 mm around it.
+    EXPECT_NEAR((shown.min - motion::MachinePoint{-300, -300, -300}).norm(), 0.0, 1e-9) << cuts;
+    EXPECT_NEAR((shown.max - motion::MachinePoint{5300, 380, 300}).norm(), 0.0, 1e-9) << cuts;
+  }
+}
+
 // Four views at most; a mill is seen from above unless something else is asked for.
 TEST(PictureView, WhichViews) {
   const auto titles = [](const std::vector<PictureView>& views, bool five_axis) {

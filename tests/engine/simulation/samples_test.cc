@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -364,7 +365,9 @@ TEST(Samples, EndsWhenTheSinkTakesNoMore) {
   script.Step(1, 1).Line({0, 0, 0}, {100, 0, 0}).Wait(machine::WaitKind::kDwell, 100.0);
   FakeRun run(script, recorder);
   run.Advance(kForever);
+  const std::uint64_t lines = recorder.lines();
   recorder.Finish(run.state().time);
+  EXPECT_EQ(recorder.lines(), lines);  // its end has none any more
   EXPECT_EQ(calls, 2);
   EXPECT_FALSE(recorder.complete());
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/engine/simulation/xml_check.h"
@@ -47,6 +48,11 @@ TEST(XmlText, BoundsOfUtf8) {
     for (const char c : bad) expected += c == '(' ? "(" : kUnknown;
     EXPECT_EQ(XmlText(bad), expected);
   }
+  // No lead has more than three followers, and none that are not there.
+  for (const char* lead : {"\xF8", "\xFF"})
+    EXPECT_EQ(XmlText(std::string(lead) + "\xBF\xBF\xBF"),
+              kUnknown + kUnknown + kUnknown + kUnknown);
+  EXPECT_EQ(XmlText(std::string_view("\xC3\xBC").substr(0, 1)), kUnknown);
   EXPECT_EQ(XmlText("\x1F \x7F\r"), kUnknown + " " + kUnknown + " ");
   EXPECT_EQ(XmlText(std::string_view("\0", 1)), kUnknown);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <string_view>
 
 namespace rmlcell::simulation {
 namespace {
@@ -240,6 +241,29 @@ TEST(ToolpathBlock, LimitsOfABlock) {
   EXPECT_EQ(WhyNot({.duration = VarintOf(latest + 1)}), "run 1 cannot be read");
   EXPECT_EQ(WhyNot({.start = VarintOf(latest - 10)}), "");
   EXPECT_EQ(WhyNot({.start = VarintOf(latest - 9)}), "run 1 cannot be read");
+}
+
+// Programs and steps are numbers of 32 bits, as places are.
+TEST(ToolpathBlock, NumbersOfARunHaveTheirLimits) {
+  const std::int64_t high = std::numeric_limits<std::int32_t>::max();
+  EXPECT_EQ(WhyNot({.step = SignedOf(high) + SignedOf(high)}), "");
+  EXPECT_EQ(WhyNot({.step = SignedOf(high + 1) + SignedOf(1)}), "run 1 cannot be read");
+  EXPECT_EQ(WhyNot({.step = SignedOf(1) + SignedOf(high + 1)}), "run 1 cannot be read");
+}
+
+// A block without runs is its head alone; what is missing of that is said.
+TEST(ToolpathBlock, AHeadThatIsCutOff) {
+  const std::string head = std::string("T\x02", 2) + std::string(2 + 1 + 5, '\0');
+  const auto why_not = [&](std::size_t length) {
+    const Result<ToolpathBlock> read =
+        DecodeToolpathBlock(std::string_view(head).substr(0, length));
+    return read ? std::string() : std::string(read.error().detail);
+  };
+  for (const std::size_t length : {2U, 3U})  // how many runs and points there are
+    EXPECT_EQ(why_not(length), "more points than a block has") << length;
+  for (std::size_t length = 4; length < head.size(); ++length)  // when, where, at which angles
+    EXPECT_EQ(why_not(length), "no first point") << length;
+  EXPECT_EQ(why_not(head.size()), "");
 }
 
 // Why bytes are no block: they are other ones, of another version, or go on behind its end.

@@ -78,6 +78,7 @@ TEST_F(ToolpathWriterTest, ARunThatGoesNowhereIsNone) {
 
 TEST_F(ToolpathWriterTest, NothingIsNoBlock) {
   ToolpathWriter writer = Writer();
+  writer.EndAt(5);  // there is no run that could end
   writer.Finish();
   writer.Open({}, {0, 0, 0});
   EXPECT_EQ(writer.OpenBlock(), "");

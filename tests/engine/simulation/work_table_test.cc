@@ -167,13 +167,15 @@ TEST(WorkTable, StepsPastTheLimitAreTheRest) {
   }
   table.Add({.program = 1, .step = limit}, Steps(1, 1.0));      // listed
   table.Add({.program = 1, .step = limit + 1}, Steps(1, 1.0));  // not listed
+  table.Add({.program = 1, .step = 1}, Steps(1, 1.0));          // listed long ago
   RunReport report;
   table.WriteTo(report);
   ASSERT_EQ(report.steps.size(), kReportedStepsMax);
+  EXPECT_EQ(report.steps.front().figures.steps, 2u);
   EXPECT_EQ(report.steps.back().figures.steps, 2u);
   EXPECT_EQ(report.rest.steps, 2u);
   EXPECT_EQ(report.rest.cut_mm, 2.0);
-  EXPECT_EQ(report.total.steps, kReportedStepsMax + 3);
+  EXPECT_EQ(report.total.steps, kReportedStepsMax + 4);
 }
 
 TEST(WorkTable, ProgramsPastTheLimitCountInTheTotalOnly) {

@@ -83,6 +83,17 @@ TEST(FirstOfAll, TheTipIsToldFromTheOriginOfTheWork) {
   EXPECT_EQ(progress.work_tip().z(), 26.0);
 }
 
+// RunReport.work_origin: where it is known, and nothing where it is not.
+TEST(FirstOfAll, AReportHasTheOriginOfItsWork) {
+  simulation::RunReport report;
+  EXPECT_FALSE(ToProto(kFiveAxes, report, {}).has_work_origin());
+  report.work_origin = motion::MachinePoint(1.0, 2.0, 4.0);
+  const v1::RunReport message = ToProto(kFiveAxes, report, {});
+  EXPECT_EQ(message.work_origin().x(), 1.0);
+  EXPECT_EQ(message.work_origin().y(), 2.0);
+  EXPECT_EQ(message.work_origin().z(), 4.0);
+}
+
 // Above 0, up to the most, which belongs to it.
 TEST(FirstOfAll, ASmallOverrideIsOne) {
   EXPECT_TRUE(CheckOverride(0.5, 100.0));

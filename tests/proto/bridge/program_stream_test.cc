@@ -243,6 +243,33 @@ TEST_F(ProgramStreamTest, AFullDiskEndsIt) {
   EXPECT_EQ(std::string(opened.stream->status().error().detail), "the temporary folder is full");
 }
 
+// And so does what cannot be read on: a folder stands in the place of the file by then.
+TEST_F(ProgramStreamTest, WhatCannotBeReadOnIsTold) {
+  const std::string path = File(Numbered(100'000));
+  ProgramStream::Opened opened = Open(path);
+  ASSERT_NE(opened.stream, nullptr);
+  struct stat wanted {};
+  ASSERT_EQ(::stat(path.c_str(), &wanted), 0);
+  int file = 3;
+  for (; file < 1024; ++file) {
+    struct stat about {};
+    if (::fstat(file, &about) == 0 && about.st_dev == wanted.st_dev &&
+        about.st_ino == wanted.st_ino)
+      break;
+  }
+  ASSERT_LT(file, 1024);
+  const int folder = ::open(folder_.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(folder, 0);
+  EXPECT_EQ(::dup2(folder, file), file);
+  ::close(folder);
+  opened.bytes.ReadAll();
+  EXPECT_TRUE(opened.bytes.whole());
+  EXPECT_EQ(opened.bytes->size(), ProgramStream::kBeginning);
+  ASSERT_FALSE(opened.stream->status());
+  EXPECT_EQ(opened.stream->status().error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(std::string(opened.stream->status().error().detail), path);
+}
+
 // Also where a single byte is left: it does not seem to be whole without it.
 TEST_F(ProgramStreamTest, AFullDiskEndsItBeforeItsLastByte) {
   ProgramStream::Opened opened = Open(File(Numbered(ProgramStream::kBeginning + 1)));

@@ -246,6 +246,7 @@ TEST_F(RecordedPower, TheEndByItIsCompared) {
   ASSERT_TRUE(told);
   EXPECT_FALSE(told->difference) << told->difference->field << told->difference->played;
   EXPECT_EQ(told->events, 1);
+  EXPECT_EQ(told->until, SecondsOf(6));  // nothing is missing: it goes on no further
 }
 
 // LIVE-3.40: what the machine told is in its entries at its time, that of the machine.
@@ -343,6 +344,15 @@ TEST_F(ToldRun, IsTheSameAgain) {
   EXPECT_EQ(same.inputs, 3);
   EXPECT_EQ(same.events, 4);
   EXPECT_EQ(same.marks, 1);
+}
+
+// A recording that ends with what was told last: nothing is missing there.
+TEST_F(ToldRun, IsTheSameUpToEachThatWasTold) {
+  for (const std::size_t count : {8U, 7U, 5U}) {
+    what_.entries.resize(count);
+    const Replayed same = Played({});
+    EXPECT_FALSE(same.difference) << count << same.difference->field << same.difference->played;
+  }
 }
 
 TEST_F(ToldRun, EachDifferenceIsToldWithBothSides) {

@@ -421,6 +421,12 @@ TEST_F(AppliedInputs, WhatItBeginsWithDidNotHappen) {
   program.set_content("PU8,0;");
   host_->Change(memory, now_);
   EXPECT_THAT(Told(), ElementsAre(Input(v1::AppliedInput::kProgramChanged), "clean mark"));
+  // What was made of the same program is another matter.
+  program.set_executable("made of it");
+  host_->Change(memory, now_);
+  EXPECT_THAT(Told(), ElementsAre(Input(v1::AppliedInput::kProgramChanged), "clean mark"));
+  host_->Change(memory, now_);
+  EXPECT_THAT(Told(), IsEmpty());
 }
 
 // LIVE-3.14: nothing is held that does not move.

@@ -75,6 +75,28 @@ TEST_F(ArmTest, APersonStartsTheJob) {
   EXPECT_EQ(Do(ByPerson("")).status().run().job(), "jobs/17");
 }
 
+// LIVE-5.02 (a): whoever is refused is told all that is in his way: that the queue starts nothing
+// here is in the way of its jobs alone.
+TEST_F(ArmTest, WhatKeepsTheQueueAloneKeepsNoPerson) {
+  MakeWith(v1::MachineOptions::START_PERSON);
+  v1::HostOrder mode;
+  mode.mutable_mode()->set_mode(v1::OPERATING_MODE_MANUAL);
+  mode.mutable_mode()->set_control_token(token_);
+  ASSERT_FALSE(Do(mode).has_refusal());
+  const auto in_the_way = [this](const v1::HostOrder& order) {
+    const v1::HostOrderAnswer answer = Do(order);
+    EXPECT_EQ(answer.refusal().code(), "CELL-E9423");
+    std::vector<std::string> why;
+    for (const v1::StartBlocker& one : answer.start_blockers()) why.push_back(one.message());
+    return why;
+  };
+  const auto no_remote = HasSubstr("jobs run in REMOTE alone");
+  EXPECT_THAT(in_the_way(ByPerson("")), ElementsAre(no_remote));
+  EXPECT_THAT(in_the_way(Start("a start")), ElementsAre(no_remote));
+  EXPECT_THAT(in_the_way(Job()),
+              ElementsAre(no_remote, HasSubstr("a person starts each job here")));
+}
+
 // LIVE-5.04, LIVE-9.13: armed for one job, it starts; then it is armed for none.
 TEST_F(ArmTest, TheQueueStartsWhatItIsArmedFor) {
   MakeWith(v1::MachineOptions::START_ARMED);

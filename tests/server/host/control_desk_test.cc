@@ -76,6 +76,50 @@ TEST_F(ControlDeskTest, TheTimeHasBounds) {
   EXPECT_TRUE(desk.Acquire(request, "anna", At(0ms)));
 }
 
+// LIVE-4.01: what is far beyond these is no time either, though its nanoseconds, as many as a
+// number has room for, would be between 1 and 2 s.
+TEST_F(ControlDeskTest, ATimeThatIsFarBeyondIsRefused) {
+  for (const std::int64_t seconds : {18'446'744'075, -18'446'744'072}) {
+    v1::AcquireControlRequest request = Asked();
+    request.mutable_ttl()->set_seconds(seconds);
+    const auto refused = desk.Acquire(request, "anna", At(0ms));
+    ASSERT_FALSE(refused) << seconds;
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellInvalidArgument);
+    EXPECT_EQ(refused.error().detail, "ttl: allowed are 1 s to 60 s");
+  }
+}
+
+// LIVE-4.03: all can read who has it now, who had it before, and by which lease; why, where it was
+// taken over.
+TEST_F(ControlDeskTest, EachChangeOfHandsIsToldOnce) {
+  const auto told = [this](v1::ControlChanged::Kind kind, const std::string& from,
+                           const std::string& to, std::int64_t lease) {
+    const auto change = desk.TakeChange();
+    ASSERT_TRUE(change);
+    EXPECT_EQ(change->kind(), kind);
+    EXPECT_EQ(change->from(), from);
+    EXPECT_EQ(change->to(), to);
+    EXPECT_EQ(change->lease(), lease);
+    EXPECT_EQ(change->reason(), "");
+    EXPECT_FALSE(desk.TakeChange());
+  };
+  v1::AcquireControlRequest given = Asked();
+  given.set_reason("nobody had it");
+  const auto first = desk.Acquire(given, "anna", At(0ms));
+  ASSERT_TRUE(first);
+  told(v1::ControlChanged::KIND_ACQUIRED, "", "anna", 1);
+  ASSERT_TRUE(desk.Release(first->control_token(), At(1ms)));
+  told(v1::ControlChanged::KIND_RELEASED, "anna", "", 0);
+  Acquire("bert");
+  told(v1::ControlChanged::KIND_ACQUIRED, "", "bert", 2);
+  ASSERT_TRUE(desk.Expire(At(5'000ms)));
+  told(v1::ControlChanged::KIND_EXPIRED, "bert", "", 0);
+  desk.GiveToQueue("jobs/17", v1::ControlLease::ON_LOSS_HOLD, At(5'000ms));
+  told(v1::ControlChanged::KIND_ACQUIRED, "", "queue/jobs/17", 3);
+  desk.RunIsOver();
+  told(v1::ControlChanged::KIND_RELEASED, "queue/jobs/17", "", 0);
+}
+
 // LIVE-4.02: renewed from now on; over by the steady clock, and never revived.
 TEST_F(ControlDeskTest, OneThatIsOverIsNotRevived) {
   const std::string token = Acquire();
@@ -141,6 +185,25 @@ TEST_F(ControlDeskTest, TheLeaseOfTheQueueDoesNotRunOut) {
   EXPECT_FALSE(desk.Expire(At(3'600'000ms)));
   EXPECT_EQ(desk.Check("guessed", At(3'600'000ms)).error().detail,
             "the control token is over: queue/jobs/17 has control");
+  desk.RunIsOver();
+  EXPECT_FALSE(desk.lease());
+}
+
+// LIVE-4.02: what is wanted of a run stands in the lease of a person, as long as he has it; that of
+// the queue is for its run as it is.
+TEST_F(ControlDeskTest, WhatARunWantsStandsInTheLeaseOfAPerson) {
+  desk.RunBegins(v1::ControlLease::ON_LOSS_GO_ON);
+  EXPECT_FALSE(desk.lease());
+  desk.GiveToQueue("jobs/17", v1::ControlLease::ON_LOSS_HOLD, At(0ms));
+  EXPECT_TRUE(desk.IsOfQueue());
+  desk.RunBegins(v1::ControlLease::ON_LOSS_GO_ON);
+  EXPECT_EQ(desk.lease()->on_loss(), v1::ControlLease::ON_LOSS_HOLD);
+  desk.RunIsOver();
+  EXPECT_FALSE(desk.IsOfQueue());
+  const std::string token = Acquire();
+  desk.RunBegins(v1::ControlLease::ON_LOSS_GO_ON);
+  EXPECT_EQ(desk.lease()->on_loss(), v1::ControlLease::ON_LOSS_GO_ON);
+  EXPECT_EQ(*desk.Release(token, At(1ms)), v1::ControlLease::ON_LOSS_GO_ON);
   desk.RunIsOver();
   EXPECT_FALSE(desk.lease());
 }

@@ -103,6 +103,31 @@ TEST_F(HostJobsTest, WhatIsToldOfARunHasItsTime) {
   EXPECT_EQ(over->run_time_ns(), over->virtual_time_ns() - begun->virtual_time_ns());
 }
 
+// Nor does a start that is refused meanwhile count, which takes no number either.
+TEST_F(HostJobsTest, AStartThatIsRefusedLeavesTheRunAsItIs) {
+  Make();
+  Do(Job());
+  Pass(5s, 50ms);
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("a look");
+  token_ = Do(take).control().control_token();
+  ASSERT_TRUE(Do(Start()).has_refusal());
+  Pass(1s, 50ms);
+  Do(For("jobs/17", Stop()));
+  const auto entries = host_->TakeEntries(now_, true);
+  for (std::size_t i = 1; i < entries.size(); ++i)
+    EXPECT_EQ(entries[i].sequence(), entries[i - 1].sequence() + 1);
+  EXPECT_EQ(std::ranges::count_if(
+                entries, [](const auto& one) { return one.applied().input().has_start(); }),
+            1);
+  const auto stopped = std::ranges::find_if(entries, [](const auto& one) {
+    return one.applied().input().input_case() == v1::AppliedInput::kStop;
+  });
+  ASSERT_NE(stopped, entries.end());
+  EXPECT_GT(stopped->run_time_ns(), 5'000'000'000);
+}
+
 // LIVE-6.01: a mark says up to where its run could be worked out again.
 TEST_F(HostJobsTest, AMarkSaysHowFarItsRunWas) {
   Make();
@@ -400,6 +425,22 @@ TEST_F(HostJobsTest, AnOrderlyEndCutsTheRunOff) {
   EXPECT_EQ(mark.job(), "jobs/17");
 }
 
+// LIVE-4.05, LIVE-5.09: and it is nobody's any more whose end was told: the queue gets no control
+// of it.
+TEST_F(HostJobsTest, ARunWhoseEndWasToldIsNotTheQueuesAgain) {
+  Make();
+  Do(Job());
+  Pass(5s, 50ms);
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("a look");
+  v1::HostOrder release;
+  release.mutable_release_control()->set_control_token(Do(take).control().control_token());
+  host_->EndRun(now_);
+  ASSERT_FALSE(Do(release).has_refusal());
+  EXPECT_FALSE(Status().has_control());
+}
+
 // LIVE-5.04: nothing moves until the store has the begin, whatever else is asked meanwhile.
 TEST_F(HostJobsTest, NothingMovesBeforeTheStoreHasIt) {
   Make();
@@ -479,6 +520,20 @@ TEST_F(HostJobsTest, ADecisionIsAboutTheRunThatWasCutOff) {
   EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
   EXPECT_FALSE(Do(For("jobs/99", confirm)).has_refusal());
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+}
+
+// Nor is it one of a job where a run of nobody's job was cut off, or none was.
+TEST_F(HostJobsTest, ADecisionIsAboutARunThatThereIs) {
+  Make({}, true);
+  Control();
+  v1::HostOrder confirm;
+  confirm.mutable_confirm()->set_control_token(token_);
+  confirm.mutable_confirm()->add_confirmations(v1::CONFIRMATION_INSPECTED);
+  const auto why = [&] { return Do(For("jobs/3", confirm)).refusal().message(); };
+  EXPECT_THAT(why(), HasSubstr("a run without a job was cut off here, not jobs/3"));
+  EXPECT_EQ(State(), v1::MACHINE_STATE_INSPECT);
+  ASSERT_FALSE(Do(confirm).has_refusal());
+  EXPECT_THAT(why(), HasSubstr("nothing waits for a confirmation"));
 }
 
 // A source with errors ends the job with the first of them, and nothing has moved. LIVE-5.02 (b)

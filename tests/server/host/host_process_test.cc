@@ -147,6 +147,9 @@ TEST_F(HostProcessTest, OneThatIsNotTakenEnds) {
   server_->refusal = {grpc::StatusCode::UNAUTHENTICATED, "who are you"};
   Run();
   EXPECT_EQ(host_.get(), 69);
+  server_->refusal = {grpc::StatusCode::FAILED_PRECONDITION, "of another version"};
+  Run();
+  EXPECT_EQ(host_.get(), 69);
 }
 
 TEST_F(HostProcessTest, AFamilyThatItDoesNotKnowEndsIt) {

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "server/host/journal.h"
 #include "tests/server/host/live_host_bed.h"
 
 namespace rmlcell::server {
@@ -94,6 +95,28 @@ TEST_F(LiveHostLines, ALineThatIsTakenUpAgainBeginsWithWhatIsNotStored) {
   for (const v1::JournalEntry& entry : Entries()) again.push_back(entry.sequence());
   EXPECT_EQ(std::ranges::count(again, before.front().sequence()), 2);
   EXPECT_EQ(std::ranges::count(again, before.back().sequence()), 2);
+}
+
+// LIVE-5.20: of a job that the host before was about to begin it tells with each line, until the
+// server has stored something of it.
+TEST_F(LiveHostLines, AJobThatWasAboutToBeginIsToldUntilItIsKnown) {
+  v1::JournalEntry mark;
+  mark.set_fence(3);
+  mark.set_sequence(1);
+  mark.mutable_mark()->set_clean(true);
+  v1::JournalEntry intent;
+  intent.set_fence(3);
+  intent.set_sequence(2);
+  intent.mutable_intent()->mutable_input()->mutable_start()->set_job("jobs/17");
+  ASSERT_TRUE(Journal::Open(JournalPath())->journal->Write({mark, intent}));
+  Live();
+  EXPECT_EQ(server_->Told(v1::HostRequest::kHello, 1)[0].hello().begin().job(), "jobs/17");
+  server_->EndLine();
+  EXPECT_EQ(server_->Told(v1::HostRequest::kHello, 2)[1].hello().begin().job(), "jobs/17");
+  StoreAll();
+  AskWhereItIs();  // it has heard that
+  server_->EndLine();
+  EXPECT_FALSE(server_->Told(v1::HostRequest::kHello, 3)[2].hello().has_begin());
 }
 
 // What is in the store is not told again.

@@ -118,6 +118,40 @@ TEST_F(LiveHostServers, ARunGoesOnWithTheOtherServer) {
     EXPECT_NE(told.status().state(), v1::MACHINE_STATE_HELD);
 }
 
+// LIVE-3.06, LIVE-6.01: a start that is looked at for one server is told to that, though the one
+// that stores is lost meanwhile.
+TEST_F(LiveHostServers, AStartIsLookedAtForTheOtherServer) {
+  LiveWithBoth();
+  v1::HostResponse memory;
+  v1::AssignedProgram& program = *memory.mutable_memory()->add_programs();
+  program.set_slot(6);
+  std::string text = "PA;PA;VS1;!VZ5;!PZ-50,100;!MC0;PU1000,1000;";
+  for (int turn = 0; turn < 100; ++turn) text += "PD3000,1000,3000,3000,1000,1000;";
+  program.set_content(text + "PU0,0;");
+  server_->Tell(memory);
+  AskWhereItIs();  // it has that by now
+  const auto ask = [this](v1::HostOrder order, std::int64_t number) {
+    v1::HostResponse message;
+    order.set_number(number);
+    order.set_caller("bert");
+    *message.mutable_order() = std::move(order);
+    other_->Tell(message);
+  };
+  const auto answer_to = [this](std::int64_t number) {
+    return AwaitAt(*other_, v1::HostRequest::kAnswer,
+                   [number](const v1::HostRequest& one) { return one.answer().number() == number; })
+        .answer();
+  };
+  ask(PreviewOf(6, 200), 1);
+  v1::HostOrder where;
+  where.mutable_run_state();
+  ask(where, 2);
+  EXPECT_TRUE(answer_to(2).has_run_state());  // the first is looked at
+  LoseTheOneThatStores();
+  const v1::HostOrderAnswer preview = answer_to(1);
+  EXPECT_TRUE(preview.has_preview()) << preview.refusal().message();
+}
+
 // LIVE-3.06, LIVE-7.02: keys are pressed over the other server as well, which sees what they led
 // to; what they teach cannot be stored meanwhile, and is refused.
 TEST_F(LiveHostServers, TheHandboxGoesOnWithTheOtherServer) {

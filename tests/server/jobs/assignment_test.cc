@@ -75,6 +75,11 @@ TEST_F(AssignmentTest, BringsTheWholeProgramMemoryOfAMachineWhoseProgramsCallEac
   EXPECT_EQ(assignment.programs(1).executable(), "executable 44");
   EXPECT_TRUE(assignment.default_schedules());
   EXPECT_EQ(assignment.programs(0).object_revision(), 1);
+  // A check follows a program into those that it calls, too.
+  v1::SubmitJobRequest check = Stored(32);
+  check.mutable_job()->set_kind(v1::JOB_KIND_CHECK);
+  const auto checked = Must(MakeAssignment(bed.store(), config, Lease(check)));
+  EXPECT_EQ(Contents(checked.first.assignment()), (Programs{{32, "object 32"}, {44, "object 44"}}));
 }
 
 // A mill runs one stream.

@@ -123,7 +123,7 @@ TEST_F(HostsBounds, WhatIsNotStoredIsNotToldSo) {
   const auto link = Joined();
   ASSERT_TRUE(bed.store().ReleaseMachine(Must(bed.store().MachineLeases()).front()));
   hosts.Receive(*link, Entries(Fence(*link), 1, true));
-  link->Newest(v1::HostResponse::kLeaseLost);
+  EXPECT_EQ(link->Newest(v1::HostResponse::kLeaseLost)->lease_lost().fence(), Fence(*link));
   Settle();
   EXPECT_EQ(Count(*link, v1::HostResponse::kEntriesStored), 0);
 }

@@ -41,6 +41,27 @@ TEST_F(HostsTest, WhatHaltsIsHandedOverLater) {
   EXPECT_EQ(orders(*late), 0);
 }
 
+// LIVE-2.10: of another host the machine stands already: what was to halt the one before is not for
+// it, however soon it comes.
+TEST_F(HostsTest, WhatWasToHaltTheHostBeforeIsNotForTheNext) {
+  const auto first = Joined();
+  hosts.Leave(*first);
+  v1::HostOrder stop;
+  stop.mutable_stop();
+  std::string told;
+  hosts.Ask("mill-1", std::move(stop), [&told](const Result<v1::HostOrderAnswer>& answer) {
+    told = answer ? "answered" : answer.error().detail;
+  });
+  EXPECT_EQ(told, "not delivered: it acts if this host is heard of again");
+  v1::HostHello hello = Hello("office/2");
+  hello.set_computer("office");
+  hosts.GiveTo("mill-1", "office", "anna", "moved");
+  const auto second = Joined(hello);
+  ASSERT_NE(Fence(*second), Fence(*first));
+  const auto all = second->All();
+  EXPECT_TRUE(std::ranges::none_of(all, &v1::HostResponse::has_order));
+}
+
 // LIVE-2.10: whoever pressed STOP before its host was known to be silent hears that at once, and
 // not when the line is given up.
 TEST_F(HostsTest, AStopToASilentHostIsAnsweredWhenItIsLost) {

@@ -65,6 +65,23 @@ TEST_F(ToldByHosts, AWelcomeHasTheMachine) {
   EXPECT_EQ(renewed.lease().seconds(), 60);
 }
 
+// LIVE-3.06: and the servers of its cell, to any of which it may turn.
+TEST_F(ToldByHosts, AWelcomeHasTheServersOfTheCell) {
+  Hosts others({.store = bed.store(),
+                .feed = feed,
+                .executor = *executor,
+                .server = "another server",
+                .join_token = "secret",
+                .servers = {"hall:8443", "unix:/run/rmlcell"},
+                .clock = clock.clock()});
+  const auto link = std::make_shared<FakeLink>();
+  ASSERT_TRUE(others.Join(link, Hello()));
+  EXPECT_THAT(link->Newest(v1::HostResponse::kWelcome)->welcome().servers(),
+              ElementsAre("hall:8443", "unix:/run/rmlcell"));
+  others.CloseAll();
+  Settle();
+}
+
 // LIVE-3.05: whose lease is another's is told so, by its own fence.
 TEST_F(ToldByHosts, ALeaseThatIsLostIsNamed) {
   const auto link = Joined();

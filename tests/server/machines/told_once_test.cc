@@ -96,6 +96,7 @@ TEST_F(ToldOnce, AMessageIsOfOneKind) {
   edit.mutable_edit()->set_object("PA;");
   hosts.Receive(*link, std::move(edit));
   EXPECT_FALSE(link->Newest(v1::HostResponse::kEditAnswer)->edit_answer().has_refusal());
+  EXPECT_TRUE(Must(bed.store().ListTeachRecords("mill-1", 0, 0, 9)).empty());  // it taught nothing
   Settle();
   EXPECT_EQ(Count(*link, v1::HostResponse::kRenewed), 0);
   v1::HostRequest renew;

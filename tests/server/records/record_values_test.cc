@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "server/records/job_messages.h"
 #include "server/records/machine_capabilities.h"
 #include "server/records/machine_messages.h"
 #include "server/records/program_memory.h"
@@ -45,6 +48,20 @@ TEST(RecordValues, OfAMachineWhoseJobsWait) {
   status = StatusOf(record, {{.machine = "mill-1", .unfinished = 2, .oldest_running = 1}});
   EXPECT_EQ(status.simulating_job(), "jobs/1");
   EXPECT_EQ(status.state(), v1::MACHINE_STATE_RUNNING);
+}
+
+// A fraction of a second is told forwards, whatever the second: of 1969 as of today.
+TEST(RecordValues, OfTimesBeforeTheEpoch) {
+  const std::vector<std::pair<std::int64_t, std::int32_t>> times = {
+      {-1, 500'000'000}, {-62'135'596'800, 1'000}, {0, 0}, {1'700'000'000, 999'999'000}};
+  for (const auto& [seconds, nanos] : times) {
+    google::protobuf::Timestamp time;
+    time.set_seconds(seconds);
+    time.set_nanos(nanos);
+    const google::protobuf::Timestamp told = ToProto(FromProto(time));
+    EXPECT_EQ(told.seconds(), seconds);
+    EXPECT_EQ(told.nanos(), nanos);
+  }
 }
 
 // What has no bytes is there all the same.

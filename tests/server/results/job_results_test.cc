@@ -481,12 +481,17 @@ TEST_F(JobResultsTest, FiguresOfOneJobAloneAreCompared) {
 
 // Lines are added where the machine still has the program; without them the map stands as it is.
 TEST_F(JobResultsTest, AStepMapWithoutItsMachineIsThatOfTheJob) {
+  const std::string object = ObjectOf("STOP\n");
+  for (const char* id : {"mill-1", "optimo-1"})
+    Must(bed.store().PutPrograms(id, {{.slot = 45, .object = object}}, {}));
   v1::GetStepMapResponse map;
   map.add_programs()->set_program(45);
+  map.mutable_programs(0)->set_object_sha256(bridge::Sha256Hex(object));
   const auto bytes = map.SerializeAsString();
   const std::string mill = Ended(Job("PA;", "mill-1"), {}, {StepsArtifact(map)});
-  EXPECT_EQ(Must(Map(mill)).SerializeAsString(), bytes);
+  EXPECT_EQ(Must(Map(mill)).SerializeAsString(), bytes);  // whose programs have no other form
   const std::string job = Ended(Job("STOP\n"), {}, {StepsArtifact(map)});
+  EXPECT_GT(Must(Map(job)).programs(0).lines_size(), 0);
   storage::MachineRecord machine = Must(bed.store().GetMachine("optimo-1"));
   machine.profile = "none";
   Must(bed.store().PutMachine(machine, storage::kAnyRevision));

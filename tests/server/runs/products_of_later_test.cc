@@ -183,6 +183,35 @@ TEST_F(ProductsOfLater, TroubleOfADiskIsNotTheFaultOfARecording) {
   EXPECT_TRUE(HasReport(job));
 }
 
+// Nor where there was no room for what is played: its folder lies by then where nothing can be
+// written.
+TEST_F(ProductsOfLater, WhatHadNoRoomIsPlayedAgain) {
+  const std::int64_t job = Over();
+  Record(job);
+  std::ofstream(program_) << "#!/bin/sh\nrm -r \"$4\"\nln -s /proc \"$4\"\nexit 1\n";
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  std::filesystem::remove(runs_ + "/" + std::to_string(job));
+  std::ofstream(program_) << "#!/bin/sh\ncp " << folder_.File("report") << " $4/report\n";
+  LookAtMill();
+  EXPECT_TRUE(HasReport(job));
+}
+
+// Where all was made, or there was nothing to make, it is not looked at again by itself: whoever is
+// looked at behind it would come behind that.
+TEST_F(ProductsOfLater, WhatIsDoneIsNotLookedAtAgain) {
+  again_after_ = std::chrono::milliseconds(0);
+  products().Look("optimo-1");
+  ASSERT_TRUE(Eventually([&] { return store_.looks_at_optimo > 0; }));
+  for (int run = 0; run < 2; ++run) {
+    const std::int64_t job = Over();
+    Record(job);
+    products().Look("mill-1");
+    ASSERT_TRUE(Eventually([&] { return HasReport(job); }));
+  }
+  EXPECT_EQ(store_.looks_at_optimo.load(), 1);
+}
+
 // Nor where the store does not say which runs there are.
 TEST_F(ProductsOfLater, RunsThatCannotBeListedAreLookedAtAgain) {
   const std::int64_t job = Over();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -171,6 +172,8 @@ TEST_F(RunProductsTest, OneThatTakesTooLongIsGivenUp) {
     ASSERT_TRUE(Eventually([&] { return IsOver(job); }));
   }
   EXPECT_FALSE(HasReport(job));
+  // Nor is a dead process left that nobody asked how it ended.
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
 }
 
 // What became of each is in the log, by its own code: whoever misses a report reads there why.

@@ -79,6 +79,8 @@ class CellWatchTest : public testing::Test {
       *lease = room.bed.Lease();
     }
     last = Must(room.bed.store().LastPosition());
+    // What the feed has not read yet would be told later than what stands for now.
+    EXPECT_TRUE(Eventually([this] { return room.feed.position() >= last; }));
   }
   v1::WatchCellRequest After(std::int64_t sequence,
                              const std::vector<std::string>& parts = {"jobs"},

@@ -133,6 +133,22 @@ TEST_F(KeptMessages, OfTwoLargeOnesTheNewestIsKept) {
   EXPECT_NE(made(before).begin(), first.begin());
 }
 
+// What is there already takes its room once, also where somebody asks for it from further back.
+TEST_F(KeptMessages, WhatIsThereAlreadyTakesItsRoomOnce) {
+  const std::string text(SharedLog::kBytesOfOne * 2 / 5, 'x');  // two find room, three do not
+  const std::int64_t before = Last();
+  Say({"small", text, text});
+  const auto log = LogOfJobs();
+  const auto made = [&](std::int64_t position) {
+    return *Must(log->After(position, false))->message;
+  };
+  const grpc::Slice second = made(before + 1);
+  const grpc::Slice third = made(before + 2);
+  made(before);
+  EXPECT_EQ(made(before + 1).begin(), second.begin());
+  EXPECT_EQ(made(before + 2).begin(), third.begin());
+}
+
 // A message of several events ends where it has its bytes, and where what is read at once ends.
 TEST_F(KeptMessages, AMessageOfSeveralEventsIsNotTooLarge) {
   constexpr std::size_t kHalf = SharedLog::kMessageBytes / 2;

@@ -248,6 +248,26 @@ TEST_F(LiveJobs, ACancelGoesToTheHost) {
   EXPECT_EQ(orders[0].abort().request_id(), "d");
 }
 
+// LIVE-5.05: nor do other orders for it go anywhere then, and it is told why: it does not wait in
+// the queue, where it could be held back or let go.
+TEST_F(LiveJobs, WhereNoHostIsHeardOfARunTakesNoOrders) {
+  const std::int64_t run = Submit(v1::JOB_KIND_RUN);
+  GiveToHost(run);
+  const auto expect_refused = [&](auto method, auto request) {
+    request.set_name(JobName(run));
+    request.set_request_id("r");
+    Call(jobs, method, request);
+    ExpectRefused(grpc::StatusCode::UNAVAILABLE,
+                  "no machine is heard of that runs " + JobName(run));
+  };
+  using Stub = v1::JobService::Stub;
+  expect_refused(&Stub::HoldJob, v1::HoldJobRequest());
+  expect_refused(&Stub::StopJob, v1::StopJobRequest());
+  expect_refused(&Stub::ResumeJob, v1::ResumeJobRequest());
+  EXPECT_FALSE(Must(store().GetJob(run)).held);
+  EXPECT_THAT(host->TakeOrders(), IsEmpty());
+}
+
 // Many at once: those that run on a machine are aborted there.
 TEST_F(LiveJobs, ACancelOfManyGoesToTheHost) {
   const std::int64_t run = Submit(v1::JOB_KIND_RUN);

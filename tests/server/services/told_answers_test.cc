@@ -103,6 +103,7 @@ class ToldCell : public testing::Test {
  protected:
   ToldCell() {
     config_.cell_name = "the hall";
+    config_.limit_program_bytes = kMostBytes;
     grpc::ServerBuilder builder;
     builder.RegisterService(&service_);
     server_ = builder.BuildAndStart();
@@ -121,6 +122,8 @@ class ToldCell : public testing::Test {
     status = stub_->GetCell(&context, {}, &cell);
     return cell;
   }
+
+  static constexpr std::int64_t kMostBytes = 12'345;  // of a program
 
   DispatcherBed bed;
   RefusingStore store{bed.server.store()};
@@ -169,6 +172,18 @@ TEST_F(ToldCell, SaysWhatItIsAndWhatItHasToDo) {
   Get();
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INTERNAL);
   EXPECT_THAT(status.error_message(), testing::HasSubstr("the disk is full"));
+}
+
+// What a call takes of a program, what the cell takes at all, and who works for it.
+TEST_F(ToldCell, SaysWhatItTakesAndHowManyWork) {
+  EXPECT_EQ(Get().workers(), 0);
+  const FakeWorker one(bed.dispatcher(), "one");
+  const FakeWorker two(bed.dispatcher(), "two");
+  const v1::Cell cell = Get();
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(cell.workers(), 2);
+  EXPECT_EQ(cell.unary_program_bytes_max(), std::int64_t{3} << 20);
+  EXPECT_EQ(cell.program_bytes_max(), kMostBytes);
 }
 
 // Nor do they open a watch of everything.

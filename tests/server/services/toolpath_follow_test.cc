@@ -237,14 +237,19 @@ TEST_F(ToolpathFollowTest, APartOfAFrameIsTakenFromTheStoreAsAWhole) {
   stream.ExpectGoodEnd();
 }
 
-// ToolpathHeader.duration_ns: virtual time of the run, as its report has it.
+// ToolpathHeader.duration_ns: virtual time of the run, as its report has it; tip_box: where it was.
 TEST_F(ToolpathFollowTest, TheHeaderSaysHowLongItTakes) {
   const std::int64_t job = room.Submit(Simulation());
   v1::RunReport report;
   report.mutable_total()->mutable_times()->set_cycle_s(2.5);
+  report.mutable_tip_box()->mutable_low()->set_x(3.0);
+  report.mutable_tip_box()->mutable_high()->set_x(4.0);
   room.Finish(room.bed.Lease(), {{.name = "toolpath", .bytes = Framed({"one"})},
                                  {.name = "report", .bytes = report.SerializeAsString()}});
-  EXPECT_EQ(Follow(job).Next().header().duration_ns(), 2'500'000'000);
+  const v1::ToolpathHeader header = Follow(job).Next().header();
+  EXPECT_EQ(header.duration_ns(), 2'500'000'000);
+  EXPECT_EQ(header.tip_box().low().x(), 3.0);
+  EXPECT_EQ(header.tip_box().high().x(), 4.0);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "server/jobs/job_book.h"
 #include "server/programs/program_book.h"
 #include "tests/server/engine_bytes.h"
+#include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -144,6 +145,19 @@ TEST_F(WebResourcesTest, ProductsOfAJob) {
             ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{finished("\xFF\xFF"), "report"}, {})),
             ErrorCode::kCellStoreCorrupt);
+}
+
+// What the store refuses, the look for a product or its bytes, is what the page ends with.
+TEST_F(WebResourcesTest, AProductThatCannotBeReadIsAnError) {
+  bed.SubmitCheck();
+  const storage::Lease lease = bed.Lease();
+  Must(bed.store().Finish(lease, {.artifacts = {{.name = "picture.svg", .bytes = "<svg/>"}}}));
+  const web::ArtifactPath path{std::to_string(lease.job), "picture.svg"};
+  FailingStore failing{bed.store()};
+  JobBook refused{failing, config};
+  WebResources of_refused{gate, bed.store(), refused, programs};
+  ExpectFailuresHandedOn(failing, "a product", 2,
+                         [&] { return CodeOf(of_refused.Find(path, {})); });
 }
 
 // docs/api.md: bytes for a job take no slot; all of them come, or none is kept.

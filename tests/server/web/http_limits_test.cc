@@ -278,6 +278,7 @@ TEST_F(HttpLimits, TooManyConnectionsGet503) {
   const RawResponse refused = fifth.Read();
   EXPECT_EQ(ErrorOf(refused), "503 CELL-E9020");
   EXPECT_EQ(refused.Header("retry-after"), "2");
+  EXPECT_EQ(refused.Header("connection"), "close");
   EXPECT_TRUE(fifth.AtEnd());
   clients.clear();
   ExpectStillWell();

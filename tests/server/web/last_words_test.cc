@@ -6,8 +6,10 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "server/web/refused_connection.h"
@@ -242,6 +244,57 @@ TEST(LastWords, AReaderMayBeSlow) {
     return true;
   });
 }
+
+// A line that says nothing is for a stream that is quiet, which one that is written to in between
+// is not. The cell of these tests tells something ten times a second, for six seconds.
+TEST(LastWords, AStreamThatTellsSomethingIsNotQuiet) {
+  ExpectOfSomeTime([](milliseconds time) {
+    WebOptions options = AnyPort();
+    options.quiet_interval = time;
+    const FakeCell cell(options);
+    RawClient client(cell.port());
+    client.Send(Get("/rmlcell.v1.CellService/WatchCell"));
+    if (client.ReadHead().status != 200) return false;
+    for (milliseconds told(0); told < 3 * time; told += milliseconds(100)) {
+      const std::string piece = client.ReadUntil("\n\n\r\n");
+      if (piece.find("data: {") == std::string::npos || piece.find(": quiet") != std::string::npos)
+        return false;
+    }
+    return true;
+  });
+}
+
+// The only thread is busy until the time for a request is over, which has come meanwhile.
+bool IsServedAfterBusyThread(milliseconds time) {
+  std::promise<void> busy;
+  std::promise<void> go_on;
+  std::atomic<bool> first = true;
+  const auto logger = [&, may_go_on = go_on.get_future().share()](const WebLogEntry&) {
+    if (!first.exchange(false)) return;
+    busy.set_value();
+    may_go_on.wait();
+  };
+  WebOptions options = AnyPort();
+  options.read_timeout = time;
+  FakeResources resources;
+  const auto web = WebServer::Start(options, nullptr, resources, logger);
+  if (!web) return false;
+  RawClient client((*web)->port());
+  RawClient other((*web)->port());
+  other.Send(Get("/favicon.svg"));
+  const bool held =
+      other.Read().status == 200 &&
+      busy.get_future().wait_for(std::chrono::minutes(1)) == std::future_status::ready;
+  client.Send(Get("/favicon.svg"));
+  const bool waited = !client.AnswersWithin(2 * time);
+  go_on.set_value();
+  const bool answered = client.Read().status == 200;
+  client.Send(Get("/favicon.svg"));
+  return held && waited && answered && client.Read().status == 200;
+}
+
+// What has come is not late because nobody had the time to look at it, and its connection stands.
+TEST(LastWords, WhatHasComeIsNotLate) { ExpectOfSomeTime(IsServedAfterBusyThread); }
 
 // The port is free as soon as its server is gone, though the system still waits
 // for stray packets of connections that the server ended first.

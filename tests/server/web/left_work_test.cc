@@ -181,31 +181,46 @@ TEST(LeftWork, NothingOfAnUploadRemains) {
   ExpectLeftAt(WaitingWork::kAppend, Post(kPlaceContent, "application/octet-stream", "MOVE"));
 }
 
-// Is left open until its client goes.
+// What OpenCalls count.
+struct OpenCounts {
+  std::atomic<int> open = 0;
+  std::atomic<int> begun = 0;
+  std::atomic<int> left = 0;  // by a client that goes, and not by the time that they have
+};
+
+// Is left open until its client goes, or until the time is over that it has.
 class OpenCall final : public grpc::ServerGenericBidiReactor {
  public:
-  explicit OpenCall(std::atomic<int>& open) : open_(open) {}
-  void OnCancel() override { Finish(grpc::Status::CANCELLED); }
+  OpenCall(OpenCounts& counts, std::chrono::system_clock::time_point deadline)
+      : counts_(counts), deadline_(deadline) {
+    ++counts_.open;
+    ++counts_.begun;
+  }
+  void OnCancel() override {
+    if (std::chrono::system_clock::now() + std::chrono::seconds(1) < deadline_) ++counts_.left;
+    Finish(grpc::Status::CANCELLED);
+  }
   void OnDone() override {
-    --open_;
+    --counts_.open;
     delete this;
   }
 
  private:
-  std::atomic<int>& open_;
+  OpenCounts& counts_;
+  const std::chrono::system_clock::time_point deadline_;
 };
 
 class OpenCalls final : public grpc::CallbackGenericService {
  public:
-  grpc::ServerGenericBidiReactor* CreateReactor(grpc::GenericCallbackServerContext*) override {
-    ++open;
-    ++begun;
-    return new OpenCall(open);
+  grpc::ServerGenericBidiReactor* CreateReactor(
+      grpc::GenericCallbackServerContext* context) override {
+    return new OpenCall(counts, context->deadline());
   }
-  std::atomic<int> open = 0;
-  std::atomic<int> begun = 0;
+  OpenCounts counts;
 };
 
+// Its call is left as soon as its client goes. On a slow machine the time of the call may be over
+// before that: then once more.
 TEST(LeftWork, NobodyIsToldOfTheHealth) {
   grpc::EnableDefaultHealthCheckService(false);  // it would answer at once
   OpenCalls calls;
@@ -215,11 +230,15 @@ TEST(LeftWork, NobodyIsToldOfTheHealth) {
   FakeResources resources;
   std::unique_ptr<WebServer> web =
       *WebServer::Start(AnyPort(), server->InProcessChannel({}), resources);
-  RawClient client(web->port());
-  client.Send(Get("/healthz"));
-  EXPECT_TRUE(FakeCell::Eventually([&] { return calls.begun == 1; }));
-  client.Reset();
-  EXPECT_TRUE(FakeCell::Eventually([&] { return calls.open == 0 && web->connections() == 0; }));
+  const OpenCounts& counts = calls.counts;
+  for (int round = 1; round <= 10 && counts.left == 0; ++round) {
+    RawClient client(web->port());
+    client.Send(Get("/healthz"));
+    EXPECT_TRUE(FakeCell::Eventually([&] { return counts.begun == round; }));
+    client.Reset();
+    EXPECT_TRUE(FakeCell::Eventually([&] { return counts.open == 0 && web->connections() == 0; }));
+  }
+  EXPECT_GT(counts.left, 0);
   EXPECT_EQ(Exchange(web->port(), Get("/favicon.svg")).status, 200);
   web.reset();
   server->Shutdown(std::chrono::system_clock::now());

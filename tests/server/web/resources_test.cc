@@ -186,6 +186,14 @@ TEST_F(Resources, UploadInChunksAndWithContinue) {
   EXPECT_EQ(cell_.resources().headers.back().size, -1);
 }
 
+// RFC 9110 10.1.1: who has nothing to send needs not be told to send it; the answer comes first.
+TEST_F(Resources, AnUploadOfNothingIsNotWaitedFor) {
+  const RawResponse answer = Exchange(
+      cell_.port(), Post(kContent, "application/octet-stream", "", "Expect: 100-continue\r\n"));
+  EXPECT_EQ(answer.status, 400);
+  EXPECT_EQ(Json::parse(answer.body)["details"][1]["code"], "CELL-E9017");
+}
+
 // All or nothing: whatever goes wrong, nothing of the upload remains.
 TEST_F(Resources, UploadsThatFail) {
   const auto upload = [&](const std::string& query, std::string_view body) {

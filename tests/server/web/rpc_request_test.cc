@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
+#include <string_view>
 
 #include "rmlcell/v1/job.pb.h"
 #include "server/web/base64.h"
@@ -69,6 +70,20 @@ TEST(MethodPaths, GetCallsOnlyWhatChangesNothing) {
       EXPECT_EQ(put.refusal->http_status, 405);
       EXPECT_EQ(put.refusal->headers, (HeaderList{{"Allow", reads ? "GET, POST" : "POST"}}));
     }
+  }
+}
+
+// Such a word is a whole one: it ends where the name does, or another begins. What goes on may
+// change something.
+TEST(MethodPaths, GetCallsByWholeWordsOnly) {
+  for (const std::string_view reads :
+       {"Get", "GetRow", "GetZero", "List", "ListAny", "WatchJob", "StreamJob", "Explain"}) {
+    EXPECT_TRUE(OnlyReads(reads)) << reads;
+  }
+  for (const std::string_view other :
+       {"", "Ge", "Getaway", "Get_row", "Get9", "Get[", "Get@", "Listen", "Watched", "Explained",
+        "Streamline", "Forget", "Unlisted", "getRow"}) {
+    EXPECT_FALSE(OnlyReads(other)) << other;
   }
 }
 

@@ -190,6 +190,45 @@ TEST_F(SingleCalls, GoOnWithoutAnybodyWhoHoldsThem) {
   EXPECT_EQ(end.get().code, 0);
 }
 
+// What is told of a call may hold the call itself: with its end it is let go of.
+TEST_F(SingleCalls, HoldNobodyBehindTheirEnd) {
+  service_.answers = 0;
+  auto told = std::make_shared<std::atomic<int>>(0);
+  const std::weak_ptr<std::atomic<int>> listener = told;
+  const std::shared_ptr<RpcCall> call =
+      RpcCall::Start(channel_, {.method = "/a.B/C", .message = {}, .metadata = {}, .timeout = {}},
+                     {.on_message = [told](const std::string&) { ++*told; },
+                      .on_end = [told](const RpcCallEnd&) { ++*told; }});
+  told.reset();
+  call->ReadNext();
+  EXPECT_TRUE(FakeCell::Eventually([&] { return listener.expired(); }));
+}
+
+// rpc_call.h: a call that is left ends soon, also when the message that was waited for came just in
+// time and nobody asks for another.
+TEST_F(SingleCalls, EndWhateverComesJustInTime) {
+  service_.answers = -1;
+  for (int round = 0; round < 50; ++round) {
+    std::promise<void> seen;
+    std::promise<RpcStatus> ended;
+    auto end = ended.get_future();
+    std::atomic<bool> first = true;
+    const std::shared_ptr<RpcCall> call =
+        RpcCall::Start(channel_, {.method = "/a.B/C", .message = {}, .metadata = {}, .timeout = {}},
+                       {.on_message =
+                            [&](const std::string&) {
+                              if (first.exchange(false)) seen.set_value();
+                            },
+                        .on_end = [&](const RpcCallEnd& told) { ended.set_value(told.status); }});
+    call->ReadNext();
+    seen.get_future().wait();
+    call->ReadNext();
+    call->Cancel();
+    if (end.wait_for(std::chrono::minutes(1)) != std::future_status::ready) std::abort();
+    EXPECT_EQ(end.get().code, 1) << round;
+  }
+}
+
 // A call that is left ends, and says that it was cancelled, whether something is waited for or not.
 TEST_F(SingleCalls, WhoLeavesEndsThem) {
   service_.answers = -1;

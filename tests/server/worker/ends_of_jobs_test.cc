@@ -106,6 +106,13 @@ TEST_F(EndsOfJobs, ARunSaysWhatItHangsOnAndHowLongItTook) {
               report.total().times().cycle_s(), 1e-9);
 }
 
+// worker.proto, WorkerFinish.executables: those that were made. A check makes none.
+TEST_F(EndsOfJobs, ACheckTellsOfNoExecutable) {
+  Work(Assignment(v1::JOB_KIND_CHECK, "DELAY 1\n"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(Finished()->executables_size(), 0);
+}
+
 // However soon it is over: who follows its way has seen all of it before its end is told.
 TEST_F(EndsOfJobs, WhoFollowsAWaySeesItsEnd) {
   WorkBehind(

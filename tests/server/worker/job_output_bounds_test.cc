@@ -154,6 +154,39 @@ TEST_F(JobOutputBounds, ProcessorTimeMayBeUsedUp) {
   EXPECT_TRUE(lease.over_time());
 }
 
+// job_lease.h: what is of another lease, be it of another attempt or of another job, changes
+// nothing.
+TEST_F(JobOutputBounds, WhatIsOfAnotherLeaseChangesNothing) {
+  using Control = v1::WorkerControl;
+  Join();
+  const v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "STOP\n");
+  JobLease lease(*line_, assignment, stopping, [] { return 0.0; });
+  for (const auto kind :
+       {Control::KIND_STOP, Control::KIND_FOLLOW_TOOLPATH, Control::KIND_FOLLOW_HEIGHTS}) {
+    lease.Take(Order(kind, 4));
+    v1::WorkResponse of_another_job = Order(kind);
+    of_another_job.mutable_control()->mutable_lease()->set_job(8);
+    lease.Take(of_another_job);
+  }
+  lease.Take(Release(4));
+  EXPECT_FALSE(lease.has_orders());
+  EXPECT_FALSE(lease.toolpath_followed());
+  EXPECT_FALSE(lease.heights_followed());
+  EXPECT_FALSE(lease.lost());
+  lease.Take(Order(Control::KIND_FOLLOW_TOOLPATH));
+  EXPECT_TRUE(lease.toolpath_followed());
+  EXPECT_FALSE(lease.heights_followed());
+  lease.Take(Order(Control::KIND_FOLLOW_HEIGHTS));
+  EXPECT_TRUE(lease.heights_followed());
+  EXPECT_FALSE(lease.has_orders());  // they wait for nobody
+  lease.Take(Order(Control::KIND_STOP));
+  ASSERT_TRUE(lease.has_orders());
+  EXPECT_EQ(lease.TakeOrders().front().kind(), Control::KIND_STOP);
+  EXPECT_FALSE(lease.has_orders());
+  lease.Take(Release());
+  EXPECT_TRUE(lease.lost());
+}
+
 // A program of many parts comes through, however slowly it is taken off.
 TEST_F(JobOutputBounds, AProgramOfManyPartsComesThrough) {
   Join();

@@ -48,6 +48,23 @@ TEST_F(JobProducts, ACheckFindsWhatTheMotionWouldMeet) {
   EXPECT_GT(Events()[1].virtual_time_ns(), 0);
 }
 
+// A thousand places of the motion are listed, and the others counted.
+TEST_F(JobProducts, ACheckCountsWhatTheMotionMeetsBeyondThoseListed) {
+  std::string source = "COORD ROBOT\n";
+  for (int move = 0; move < 1'005; ++move)
+    source += move % 2 == 0 ? "MOVE (4000.,0.,0.,0.,0.)\n" : "MOVE (4100.,0.,0.,0.,0.)\n";
+  v1::WorkerAssignment assignment = CheckOf(source);
+  for (const char* limit : {"OBJECT_LIMIT", "EXECUTABLE_LIMIT"})
+    (*assignment.mutable_parameters())[limit] = "1000000";
+  Work(assignment);
+  const v1::RunReport report = Report();
+  EXPECT_EQ(report.diagnostics_dropped(), 5);
+  ASSERT_EQ(report.gathered_size(), 1);
+  EXPECT_EQ(report.gathered(0).code(), "OPT-E7301");
+  EXPECT_EQ(report.gathered(0).count(), 5);
+  EXPECT_EQ(report.gathered(0).last().step(), 1'006);
+}
+
 // OPT-7.28: without a SYSDEF of its own where it goes hangs on the one before: a person should
 // look.
 TEST_F(JobProducts, ACheckThatHadToAssumeDoubts) {
@@ -179,6 +196,7 @@ TEST_F(JobProducts, TheStepsOfItsProgramsAreKept) {
   v1::GetStepMapResponse map;
   ASSERT_TRUE(map.ParseFromString(Artifacts()["steps"]));
   ASSERT_EQ(map.programs_size(), 1);
+  EXPECT_EQ(map.programs(0).program(), 45);
   EXPECT_EQ(map.programs(0).object_sha256().size(), 64U);
   ASSERT_GE(map.programs(0).lines_size(), 2);
   EXPECT_EQ(map.programs(0).lines(0), 2);

@@ -323,5 +323,67 @@ TEST(PlainSteps, ParametersAreThoseOfTheirOwnCall) {
   EXPECT_EQ(ran.variables.at("VR[3]"), "0.0");
 }
 
+// plain_code.h: each kind of plain instruction has its own operations, and what needs more than
+// variables is none.
+TEST(PlainSteps, EachKindHasItsOperations) {
+  struct Row {
+    std::string text;
+    std::vector<PlainOp> operations;  // behind kBegin
+  };
+  using Does = PlainOp;
+  const std::string labels = "10 VI[1]=1\n20 VI[1]=2\n";
+  for (const Row& row :
+       {Row{"VL[2]=VL[1]\n", {Does::kVl, Does::kSetVl}},
+        Row{"VL[2]=OL[1]\n", {Does::kOl, Does::kSetVl}}, Row{"VL[1]=ON\n", {Does::kSetVl}},
+        Row{"VI[1]=7\n", {Does::kSetVi}},
+        Row{"VR[1]=SQRT(VR[2])\n", {Does::kOperate, Does::kSetVr}}, Row{"TASK 1\n", {Does::kGoOn}},
+        Row{"GOTO 10\n" + labels, {Does::kGoTo}}, Row{"GOSUB 10\n" + labels, {Does::kGosub}},
+        Row{"RETURN\n", {Does::kReturn}},
+        Row{"IF VL[1] THEN 10\n" + labels, {Does::kVl, Does::kIf, Does::kGoOn}},
+        Row{"IF VL[1] THEN 10 ELSE 20\n" + labels, {Does::kVl, Does::kIf, Does::kGoTo}},
+        Row{"GOTO VI[1] (10,20)\n" + labels,
+            {Does::kSelect, Does::kGoTo, Does::kGoTo, Does::kGoOn}}}) {
+    const Loaded loaded = LoadedText(row.text);
+    const PlainOperation* at = loaded->plain[0].At(0);
+    ASSERT_EQ(at->op, Does::kBegin) << row.text;
+    for (const PlainOp op : row.operations) EXPECT_EQ((++at)->op, op) << row.text;
+  }
+  for (const std::string text : {"DELAY 1\n", "OL[1]=ON\n", "VL[1]=IL[1]\n", "VR[1]=IA[5]\n"}) {
+    const Loaded loaded = LoadedText(text);
+    EXPECT_EQ(loaded->plain[0].At(0)->op, Does::kLeave) << text;
+  }
+}
+
+// plain_code.h: what the control sets itself need not be known.
+TEST(PlainSteps, WhatAStepReads) {
+  const auto first_read = [](const std::string& text) {
+    const Loaded loaded = LoadedText(text);
+    return static_cast<std::size_t>(loaded->plain[0].At(0)->result);
+  };
+  EXPECT_EQ(first_read("VR[1]=VI[99]\n"), kAlwaysSet);
+  EXPECT_EQ(first_read("VR[1]=VI[97]\n"), NumberOf({VariableGroup::kVi, 97}));
+  EXPECT_EQ(first_read("VR[1]=PAR[3]\n"), NumberOf({VariableGroup::kPar, 3}));
+}
+
+// plain_code.h: a FUNCTION of the same executable is plain, with its arguments.
+TEST(PlainSteps, AFunctionHasItsArguments) {
+  Executable executable;
+  for (const auto& [slot, text] :
+       {std::pair{1, "FUNCTION 44 (VR[1],2.)\n"}, std::pair{44, "RETURN\n"}}) {
+    Compilation compiled = Compile(text, "test.S", {.object_limit = 0, .advice = false});
+    ASSERT_TRUE(compiled.ok) << text;
+    executable.modules.push_back({.slot = slot, .module = std::move(compiled.module)});
+  }
+  const Loaded loaded = Load(std::move(executable));
+  const PlainOperation* at = loaded->plain[0].At(0);
+  ASSERT_EQ(at[0].op, PlainOp::kBegin);
+  EXPECT_EQ(at[1].op, PlainOp::kArgument);
+  EXPECT_EQ(at[2].op, PlainOp::kArgument);
+  EXPECT_EQ(at[2].result, 1);
+  EXPECT_EQ(at[3].op, PlainOp::kFunction);
+  EXPECT_EQ(at[3].result, 2);
+  EXPECT_EQ(at[3].target, 1U);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing::plain_steps

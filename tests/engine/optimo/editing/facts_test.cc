@@ -1,14 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "engine/core/catalogue.h"
 #include "engine/optimo/editing/allowance.h"
+#include "engine/optimo/editing/optimo_editing.h"
 #include "engine/optimo/editing/rule_facts.h"
 #include "engine/optimo/editing/variable_facts.h"
 #include "engine/optimo/editing/word_facts.h"
@@ -144,6 +147,18 @@ TEST(Facts, FormsNameTheirWord) {
     if (row.form.empty()) continue;
     EXPECT_NE(row.form.find(Describe(row.word).text), std::string_view::npos) << row.form;
   }
+}
+
+// Whoever asks for the words gets all of them, in the order of their names.
+TEST(Facts, WordsStandInTheOrderOfTheirNames) {
+  const std::vector<machine::LanguageWord> words = OptimoWords();
+  EXPECT_EQ(words.size(), WordFacts().size());
+  EXPECT_TRUE(std::ranges::is_sorted(words, {}, &machine::LanguageWord::name));
+  const auto found = std::ranges::find(words, "MOVE", &machine::LanguageWord::name);
+  ASSERT_NE(found, words.end());
+  EXPECT_EQ(found->form, FactOf(Word::kMove).form);
+  EXPECT_EQ(found->text, FactOf(Word::kMove).text);
+  EXPECT_EQ(found->rule, Describe(Word::kMove).rule);
 }
 
 // OPT-7.60: what each group holds, and which process a flag of IL is of (OPT-3.37).

@@ -87,5 +87,18 @@ TEST(HandboxForm, WordsAreChosen) {
   EXPECT_EQ(form.text(), "BREAK = OFF");
 }
 
+// OPT-5.01: NEXT stays at the last field of a line that is the last one, PREV at the first.
+TEST(HandboxForm, ItStaysAtItsEnds) {
+  Form form(FormKind::kProcess, {{Field::Whole("A", 1, 1, 0, 9), Field::Whole("B", 1, 2, 0, 9)}});
+  form.Move(true);
+  form.Move(true);
+  form.Type('7');
+  EXPECT_EQ(form.text(), "A1B7");
+  form.Move(false);
+  form.Move(false);
+  form.Type('8');
+  EXPECT_EQ(form.text(), "A8B7");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -239,5 +239,210 @@ TEST(AdviceEnds, FunctionOneIsNoTask) {
     EXPECT_EQ(CountOf(text, 7033, "OPT-9.12"), 0) << text;
 }
 
+// OPT-3.34, OPT-3.46: a jump to behind the last instruction ends the program as well.
+TEST(AdviceEnds, AJumpToTheEndEndsTheProgram) {
+  EXPECT_EQ(CountOf("WORK 0,0/ON\nGOTO 10\n10\n", 7408, "OPT-3.34"), 1);
+  EXPECT_EQ(CountOf("WORK 0,0/ON\nWORK 0,0/OFF\nGOTO 10\n10\n", 7408, "OPT-3.34"), 0);
+}
+
+// OPT-3.34, OPT-3.38: a WORK with /END switches itself off, and what was on before it as well.
+TEST(AdviceEnds, AWorkThatEndsByItselfIsNotLeftOn) {
+  const auto count = [](std::string_view text) { return CountOf(text, 7408, "OPT-3.34"); };
+  EXPECT_EQ(count("WORK 0,0/ON\n"), 1);
+  EXPECT_EQ(count("WORK 0,0/ON/END (IL[20])\n"), 0);
+  EXPECT_EQ(count("WORK 0,0/ON\nWORK 0,0/ON/END (IL[20])\n"), 0);
+  EXPECT_EQ(count("WORK 0,0/ON/END (IL[20])\nWORK 0,0/ON\n"), 1);
+}
+
+// OPT-7.07, OPT-9.16: what another program did to outputs, variables and coordinates is not known;
+// processes are off behind a CALL.
+TEST(AdviceEnds, WhatAnotherProgramDidIsNotTold) {
+  struct Row {
+    std::string before, behind;
+    int number;
+    std::string_view rule;
+  };
+  const Row rows[] = {
+      {"OL[8]=ON\n", "OL[9]=ON\n", 7409, "OPT-5.40"},
+      {"OL[9]=ON\n", "OL[8]=ON\n", 7409, "OPT-5.40"},
+      {"", "WORK 0,0/ON\nWORK 0,0/OFF\n", 7033, "OPT-5.47"},
+      {"", "VR[6]=VR[5]\n", 7033, "OPT-1.17"},
+      {"COORD ABSOL\nPATH HOLE (5.)\n", "MOVE (20.,2.,3.,0.,0.)/VIA (22.,2.,3.,0.,0.)\n", 7033,
+       "OPT-5.48"},
+      {"COORD ABSOL\nPATH LIN\nSPEED 30\nMOVE (0.,0.,0.,0.,0.)\nOL[11]=ON\nWORK 0,0/ON\nDELAY 1\n",
+       "MOVE (9.,0.,0.,0.,0.)\n", 7033, "OPT-5.46"},
+  };
+  for (const Row& row : rows) {
+    const auto count = [&](const std::string& between) {
+      return CountOf(row.before + between + row.behind, row.number, row.rule);
+    };
+    EXPECT_EQ(count(""), 1) << row.behind;
+    EXPECT_EQ(count("CALL 2\n"), 0) << row.behind;
+    EXPECT_EQ(count("FUNCTION 44\n"), 0) << row.behind;
+  }
+  // OPT-3.09: nor is it known which WORKDEFs a FUNCTION has.
+  EXPECT_EQ(CountOf("WORK 1,3/ON\nWORK 1,3/OFF\n", 7401, "OPT-3.09"), 1);
+  EXPECT_EQ(CountOf("FUNCTION 44\nWORK 1,3/ON\nWORK 1,3/OFF\n", 7401, "OPT-3.09"), 0);
+}
+
+// OPT-B.59: a TIMER may come in the subroutine that arms it, itself or by way of another one; in
+// one before the TIMER it may not.
+TEST(AdviceEnds, ATimerMayComeInTheSubroutineThatArmsIt) {
+  const std::string start = "GOSUB 20\nOL[9]=ON\n", timed = "ENDTASK\n10 OL[8]=OFF\nRETURN\n",
+                    armed = "TIMER (5.,10)\nOL[8]=ON\nTIMER /DIS\nRETURN\n";
+  const auto count = [](const std::string& text) { return CountOf(text, 7409, "OPT-5.40"); };
+  EXPECT_EQ(count(start + timed + "20 OL[8]=ON\nRETURN\n"), 1);
+  EXPECT_EQ(count(start + timed + "20 " + armed), 0);
+  EXPECT_EQ(count(start + timed + "20 GOSUB 30\nRETURN\n30 " + armed), 0);
+  EXPECT_EQ(count(start + "TIMER (5.,10)\nTIMER /DIS\n" + timed + "20 OL[8]=ON\nRETURN\n"), 1);
+}
+
+// OPT-7.20, OPT-3.33: of what stands behind a GOSUB that never comes back nothing is known.
+TEST(AdviceEnds, BehindAGosubThatNeverReturnsNothingIsKnown) {
+  const std::string text = "WORK 0,0/ON\nGOSUB 100\nCALL 2\nENDTASK\n100 ";
+  EXPECT_EQ(CountOf(text + "RETURN\n", 7407, "OPT-3.33"), 1);
+  EXPECT_EQ(CountOf(text + "ENDTASK\n", 7407, "OPT-3.33"), 0);
+}
+
+// OPT-2.54, OPT-B.59: the GOSUB of a /TIME comes behind its MOVE; when that of a TIMER comes is not
+// known.
+TEST(AdviceEnds, TheGosubOfATimeComesBehindItsMove) {
+  const std::string cut =
+      "COORD ABSOL\nPATH LIN\nSPEED 30\nMOVE (0.,0.,0.,0.,0.)\nOL[11]=ON\nWORK 0,0/ON\n";
+  const std::string move = "MOVE (9.,0.,0.,0.,0.)",
+                    rest = "\nWORK 0,0/OFF\nENDTASK\n900 MOVE (8.,0.,0.,0.,0.)\nRETURN\n";
+  const std::string timed = move + "/TIME (5.,900)" + rest;
+  EXPECT_EQ(CountOf(cut + "DELAY 1\n" + timed, 7033, "OPT-5.46"), 2);
+  EXPECT_EQ(CountOf(cut + "DELAY 1\nTIMER (5.,900)\n" + move + rest, 7033, "OPT-5.46"), 1);
+  // OPT-3.20: the first move behind the WORK is the one with the time.
+  EXPECT_EQ(CountOf(cut + timed, 7033, "OPT-3.20"), 1);
+  // OPT-3.38: /TIME of a WORK has no effect, and leads nowhere.
+  const std::string led = "ENDTASK\n900 ACCEL 5\nRETURN\n";
+  EXPECT_EQ(CountOf(move + "/TIME (5.,900)\n" + led, 7033, "OPT-3.47"), 0);
+  EXPECT_EQ(CountOf("WORK 0,0/ON/TIME (5.,900)\nWORK 0,0/OFF\n" + led, 7033, "OPT-3.47"), 1);
+}
+
+// OPT-2.48: what reads the machine stops it, and so does a MOVE that waits; of a FUNCTION and a TCP
+// it is not known.
+TEST(AdviceEnds, WhatReadsTheMachineStopsIt) {
+  const auto count = [](const std::string& behind) {
+    return CountOf(
+        "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\n"
+        "MOVE (9.,0.,0.,0.,0.)/FLY\n" +
+            behind,
+        7032, "OPT-2.48");
+  };
+  const std::string move = "MOVE (20.,0.,0.,0.,0.)";
+  EXPECT_EQ(count("VL[1]=VL[2]\n" + move), 0);
+  EXPECT_EQ(count("VL[1]=IL[20]\n" + move), 1);
+  EXPECT_EQ(count(move + "/START (VL[1])\n"), 1);
+  EXPECT_EQ(count("DELAY 1\n" + move), 1);
+  // OPT-1.33: what a statement with an error would do is not known either.
+  EXPECT_EQ(count("DELAY #\n" + move), 0);
+  // OPT-7.20: behind a GOSUB comes its subroutine, and not what stands behind it.
+  EXPECT_EQ(count("GOSUB 900\n" + move + "\nENDTASK\n900 DELAY 1\nRETURN\n"), 1);
+  EXPECT_EQ(count("GOSUB 900\nDELAY 1\nENDTASK\n900 " + move + "\nRETURN\n"), 0);
+  EXPECT_EQ(count("FUNCTION 44\nDELAY 1\n" + move), 0);
+  EXPECT_EQ(count("TCP (0,0,6/0,0,1)\nDELAY 1\n" + move + "\nGOSUB 900\nENDTASK\n900 RETURN\n"), 0);
+}
+
+// OPT-1.17: what nothing sets is told once, each variable for itself; a DECLARE reads nothing.
+TEST(AdviceEnds, AVariableThatNothingSetsIsToldOnce) {
+  const auto count = [](std::string_view text) { return CountOf(text, 7033, "OPT-1.17"); };
+  EXPECT_EQ(count("VR[0] = VR[7]\nVR[1] = VR[7] + VR[7]\n"), 1);
+  EXPECT_EQ(count("VR[0] = VR[7] + VR[8]\n"), 2);
+  EXPECT_EQ(count("DECLARE X1 = VR[7]\nX1 = 5.\n"), 0);
+}
+
+// OPT-7.109: only a SYSDEF with values shifts anything, and only a GOSUB that comes to ABSOL moves
+// stands for some.
+TEST(AdviceEnds, RobotMovesCountBesideAnOffset) {
+  const std::string absol = "COORD ABSOL\nMOVE (1.,0.,0.,0.,0.)\n",
+                    robot = "COORD ROBOT\nMOVE (2.,0.,0.,0.,0.)\n";
+  const std::string offset = "SYSDEF (10.,0.,0.,0.,0.,0.)\n";
+  const auto count = [](const std::string& text) {
+    return CountOf("PATH PTP\n" + text, 7033, "OPT-7.109");
+  };
+  EXPECT_EQ(count(offset + absol + robot + absol), 1);
+  EXPECT_EQ(count("SYSDEF\n" + absol + robot + absol), 0);
+  EXPECT_EQ(count(absol + robot + absol), 0);
+  const std::string calls = offset + absol + robot + "GOSUB 900\nENDTASK\n900 ";
+  EXPECT_EQ(count(calls + "VI[2]=1\nRETURN\n"), 0);
+  EXPECT_EQ(
+      count(offset + absol + robot + "COORD ABSOL\nGOSUB 900\nENDTASK\n900 VI[2]=1\nRETURN\n"), 0);
+  EXPECT_EQ(count(calls + absol + "RETURN\n"), 1);
+}
+
+// OPT-B.22: a MOVE that moves nothing needs no SPEED, and where one that ends early, that drills,
+// or whose target is computed has brought the tip is not known.
+TEST(AdviceEnds, AMoveWithoutSpeedFailsWhereItHasAWay) {
+  const auto count = [](const std::string& between, const std::string& x) {
+    return CountOf("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\n" + between +
+                       "SPEED 0\nMOVE (" + x + ",0.,0.,0.,0.)\nENDTASK\n900 RETURN\n",
+                   7307, "OPT-B.22");
+  };
+  EXPECT_EQ(count("", "9."), 1);
+  EXPECT_EQ(count("", "0."), 0);
+  EXPECT_EQ(count("", "VR[1]"), 0);
+  const std::string move = "MOVE (5.,0.,0.,0.,0.)";
+  EXPECT_EQ(count(move + "\n", "9."), 1);
+  for (const std::string& between :
+       {move + "/END (IL[20])\n", move + "/TIME (5.,900)\n",
+        "PATH HOLE (5.)\n" + move + "/VIA (5.,0.,9.,0.,0.)\nPATH LIN\n",
+        std::string("MOVE (VR[1],0.,0.,0.,0.)\n")})
+    EXPECT_EQ(count(between, "9."), 0) << between;
+}
+
+// OPT-2.51, OPT-5.48: how far a move goes is told of straight ones, and a hole is a PATH HOLE.
+TEST(AdviceEnds, AnArcIsNotMeasured) {
+  const auto count = [](const std::string& path, const std::string& via) {
+    return CountOf("COORD ABSOL\nPATH " + path +
+                       "\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\nMOVE (0.9,0.,0.,0.,0.)" + via +
+                       "/FLY\nMOVE (20.,0.,0.,0.,0.)\n",
+                   7314, "OPT-2.51");
+  };
+  EXPECT_EQ(count("LIN", ""), 1);
+  EXPECT_EQ(count("PTP", ""), 1);
+  EXPECT_EQ(count("CIR", "/VIA (5.,5.,0.,0.,0.)"), 0);
+  const std::string beside = "MOVE (20.,2.,3.,0.,0.)/VIA (22.,2.,3.,0.,0.)\n";
+  EXPECT_EQ(CountOf("COORD ABSOL\nPATH HOLE (5.)\n" + beside, 7033, "OPT-5.48"), 1);
+  EXPECT_EQ(CountOf("COORD ABSOL\nPATH CIR\n" + beside, 7033, "OPT-5.48"), 0);
+}
+
+// OPT-5.48, OPT-7.28: each angle of a SYSDEF turns the tool axis away from what the program says, a
+// shift does not.
+TEST(AdviceEnds, EachAngleOfASysdefTurns) {
+  const auto count = [](const std::string& values) {
+    return CountOf("SYSDEF (" + values +
+                       ")\nCOORD ABSOL\nPATH HOLE (5.)\n"
+                       "MOVE (20.,2.,3.,0.,0.)/VIA (22.,2.,3.,0.,0.)\n",
+                   7033, "OPT-5.48");
+  };
+  for (const char* shift : {"1.,0.,0.,0.,0.,0.", "0.,1.,0.,0.,0.,0.", "0.,0.,1.,0.,0.,0."})
+    EXPECT_EQ(count(shift), 1) << shift;
+  for (const char* turn :
+       {"0.,0.,0.,1.,0.,0.", "0.,0.,0.,0.,1.,0.", "0.,0.,0.,0.,0.,1.", "0.,0.,0.,0.,0.,VR[1]"})
+    EXPECT_EQ(count(turn), 0) << turn;
+}
+
+// OPT-8.78: degrees are told of FUNCTION 99 and a variable with a unit alone.
+TEST(AdviceEnds, TheRotaryTableTakesNumbersWithoutUnit) {
+  const auto count = [](std::string_view text) { return CountOf(text, 7033, "OPT-8.78"); };
+  EXPECT_EQ(count("FUNCTION 99 (VR[3])\n"), 1);
+  for (const char* text :
+       {"FUNCTION 99 (90.)\n", "FUNCTION 99 (VR[30])\n", "FUNCTION 99\n", "FUNCTION 98 (VR[3])\n"})
+    EXPECT_EQ(count(text), 0) << text;
+}
+
+// OPT-7.66, OPT-7.60, OPT-5.40, OPT-3.09: beside a fault advice is given on what has none, and what
+// has one is told it alone.
+TEST(AdviceEnds, BesideAFaultTheOthersAreAdvised) {
+  EXPECT_EQ(FindingsOf("VI[98] = 1\n", true), std::vector<int>{7016});
+  EXPECT_EQ(FindingsOf("DECLARE N = 8\nOL[9] = ON\nOL[N] = ON\nSPEED #\n", true),
+            (std::vector<int>{7409, 7001}));
+  EXPECT_EQ(FindingsOf("WORK 1,3/ON/START (VL[XX])\nDECLARE XX = #\n", true),
+            std::vector<int>{7001});
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::advice_ends

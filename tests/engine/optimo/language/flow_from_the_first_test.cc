@@ -64,6 +64,14 @@ TEST(FlowFromTheFirst, AWorkStopsWhereItPierces) {
   EXPECT_EQ(stops(none, "WORK 1,0/ON\nDELAY 1\n"), 1);
   // OPT-3.38: one with a condition waits for it, whatever that reads.
   EXPECT_EQ(stops("", "WORK 0,0/ON/START (VL[1])\n"), 1);
+  // Where the WORKDEFs of a process disagree, or a dwell is computed, neither is known.
+  const std::string with = "WORKDEF 1,0 (8.,75.,1.,50.)\n",
+                    without = "WORKDEF 1,0 (8.,75.,0.,50.)\n";
+  for (const std::string& before :
+       {with + without, without + with, std::string("WORKDEF 1,0 (8.,75.,VR[1],50.)\n")}) {
+    EXPECT_EQ(stops(before, "WORK 1,0/ON\n"), 0) << before;
+    EXPECT_EQ(stops(before, "WORK 1,0/ON\nDELAY 1\n"), 0) << before;
+  }
 }
 
 // OPT-2.47, OPT-2.48, OPT-7.20: behind a RETURN stands what follows its GOSUB; that is what is

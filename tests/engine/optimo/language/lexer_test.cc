@@ -34,6 +34,18 @@ TEST(Lexer, StatementsReachOverLines) {
   EXPECT_EQ(Kinds("SPEED 5\n)\nSTOP"), "SPEED|5|)|\nSTOP|\n");
 }
 
+// OPT-1.30: behind an operator that is a word, and inside a parenthesis behind any word.
+TEST(Lexer, StatementsReachOverLinesBehindWords) {
+  EXPECT_EQ(Kinds("VL[1] = ON AND\nOFF\nSTOP"), "VL|[|1|]|=|ON|AND|OFF|\nSTOP|\n");
+  EXPECT_EQ(Kinds("VR[1] = (X\n+ 1)\nSTOP"), "VR|[|1|]|=|(|X|+|1|)|\nSTOP|\n");
+  EXPECT_EQ(Kinds("VR[1] = 2. +\nSIN(1.)\nSTOP"), "VR|[|1|]|=|2.|+|SIN|(|1.|)|\nSTOP|\n");
+  EXPECT_EQ(Kinds("MOVE\n(1.)\nSTOP"), "MOVE|(|1.|)|\nSTOP|\n");
+  // What would be an assignment elsewhere is a comparison there.
+  EXPECT_EQ(Kinds("VL[1] = (1 +\nX = 5)\nSTOP"), "VL|[|1|]|=|(|1|+|X|=|5|)|\nSTOP|\n");
+  EXPECT_EQ(Kinds("PATH LIN\nX = 1\n"), "PATH|LIN|\nX|=|1|\n");
+  EXPECT_EQ(Kinds("MOVE (1.,\nCONT 3\n"), "MOVE|(|1.|,|\nCONT|3|\n");
+}
+
 // An instruction word ends whatever was left open.
 TEST(Lexer, InstructionWordsBeginAStatement) {
   EXPECT_EQ(Kinds("MOVE (1.,\n20 SPEED 5\n"), "MOVE|(|1.|,|\n20|SPEED|5|\n");

@@ -191,6 +191,9 @@ TEST(OneFinding, OfAStatementLeavesTheNextOnesAlone) {
   }
   EXPECT_EQ(statements("VR[2] = (1\nX1 = (5\n+ 2)\nSTOP\n"), 3U);
   EXPECT_EQ(statements("CONT (\nX1\nSTOP\n"), 3U);
+  // What has no name before its '=' is none.
+  for (const char* next : {"= 5", "1 = 5", "[1] = 5"})
+    EXPECT_EQ(statements("VR[2] = (1 #\n+ 2\n" + std::string(next) + "\n"), 1U) << next;
   EXPECT_EQ(FindingsOf("CONT (\nX1\n"), (std::vector<int>{7023, 7011}));
 }
 
@@ -361,6 +364,57 @@ TEST(OneFinding, OfANameProposesWhatFits) {
             "7011 VAVLE is not declared; did you mean VALVE?");
   EXPECT_EQ(OnlyOne("DECLARE VALVE = 7.5\nVR[1] = VAVLE\n"),
             "7011 VAVLE is not declared; did you mean VALVE?");
+}
+
+// OPT-7.42, OPT-7.48: what a DECLARE is told of its value and of its name.
+TEST(OneFinding, OfADeclareThatIsRefused) {
+  EXPECT_EQ(OnlyOne("DECLARE X1 = 4 + ON\n"), "7014 DECLARE takes no expression");
+  EXPECT_EQ(OnlyOne("DECLARE SPEED = 1\n"), "7009 'SPEED' is reserved");
+  EXPECT_EQ(OnlyOne("DECLARE FUNCTION1 = 1\n"),
+            "7009 'FUNCTION1' is reserved: eight characters count");
+}
+
+// OPT-7.46: a long name is told once, and not where nobody declared it.
+TEST(OneFinding, OfALongName) {
+  EXPECT_EQ(FindingsOf("DECLARE POSITION1 = VR[1]\nPOSITION1 = 5.\nPOSITION2 = 6.\n"),
+            std::vector<int>{7012});
+  EXPECT_EQ(FindingsOf("POSITION1 = 5.\n"), std::vector<int>{7011});
+}
+
+// OPT-2.43, OPT-3.38, OPT-7.98: each attribute once, one of those that exclude each other, and one
+// of those that must be there.
+TEST(OneFinding, OfAttributesThatDoNotFit) {
+  EXPECT_EQ(OnlyOne("WORK 0,0/ON/ON\n"), "7021 'ON' stands twice");
+  EXPECT_EQ(OnlyOne("WORK 0,0/ON/OFF\n"), "7021 'OFF' contradicts another attribute");
+  EXPECT_EQ(OnlyOne("GO 46/C/S\n"), "7021 'S' contradicts another attribute");
+  EXPECT_EQ(OnlyOne("TIMER /DIS/AUTO\n"), "7021 'AUTO' contradicts another attribute");
+  EXPECT_EQ(OnlyOne("WORK 0,0\nSTOP\n"), "7003 expected /ON or /OFF");
+  EXPECT_EQ(OnlyOne("UPDATE IL\nSTOP\n"), "7003 expected /ON or /OFF");
+}
+
+// OPT-7.72, OPT-7.82: the parenthesis that is missing is told, not what follows from it.
+TEST(OneFinding, OfAParenthesisThatIsNotClosed) {
+  for (const char* text : {"VR[0] = SIN(1. STOP\n", "VR[0] = (1. STOP\n"})
+    EXPECT_EQ(OnlyOne(text), "7003 expected ')', found 'STOP'") << text;
+}
+
+// OPT-7.16: each instruction that leads to a missing number is told, once.
+TEST(OneFinding, OfEachJumpToAMissingNumber) {
+  EXPECT_EQ(FindingsOf("GOTO 20\nGOSUB 20\n"), (std::vector<int>{7008, 7008}));
+  EXPECT_EQ(FindingsOf("IF VL[1] THEN 20 ELSE 20\n"), std::vector<int>{7008});
+}
+
+// OPT-7.23, OPT-6.01: the lines of an IF behind the one where it stopped are part of it, and no
+// steps; behind another statement they are none.
+TEST(OneFinding, OfAnIfOverSeveralLines) {
+  const Compilation compiled =
+      Compile("IF #\nTHEN 10\nELSE 20\nSPEED 101\n", "", {.advice = false});
+  ASSERT_EQ(compiled.diagnostics.size(), 2U);
+  EXPECT_EQ(compiled.diagnostics[0].code, ErrorCode::kBadCharacter);
+  EXPECT_EQ(compiled.diagnostics[1].code, ErrorCode::kLiteralRange);
+  EXPECT_EQ(compiled.diagnostics[1].step, 2);
+  EXPECT_EQ(FindingsOf("IF #\nELSE 20\n"), std::vector<int>{7001});
+  EXPECT_EQ(FindingsOf("IF #\nSTOP\nTHEN 10\n"), (std::vector<int>{7001, 7003}));
 }
 
 }  // namespace

@@ -73,6 +73,18 @@ TEST(SubroutineEffects, TheTimeOfAMoveMayRunOut) {
   EXPECT_EQ(speed_behind("SPEED 5\n30 GOTO 30\n"), 70.0F);
 }
 
+// OPT-7.20, OPT-2.54: behind the RETURN of what it calls a subroutine goes on.
+TEST(SubroutineEffects, GoOnBehindWhatTheyCall) {
+  const std::string rest = "SPEED 5\nRETURN\n20 OL[9]=ON\nRETURN\n";
+  const Followed calls("GOSUB 10\nENDTASK\n10 GOSUB 20\n" + rest);
+  EXPECT_EQ(calls.Behind(10).speed.known(), 5.0F);
+  EXPECT_TRUE(calls.Behind(10).gas_3.Is(Output::kOn));
+  const Followed timed("GOSUB 10\nENDTASK\n10 MOVE (1.,2.,3.,0.,0.)/TIME (2.,20)\n" + rest);
+  EXPECT_EQ(timed.Behind(10).speed.known(), 5.0F);
+  EXPECT_TRUE(timed.Behind(10).gas_3.MayBe(Output::kOn));
+  EXPECT_TRUE(timed.Behind(10).gas_3.MayBe(Output::kOff));
+}
+
 // The findings of a program, each with the statement that it is about. What is told of a variable
 // once is told at the first of several statements in the text: only that it is told. How far moves
 // go is left out: it is known better or worse from one to the next.

@@ -25,6 +25,16 @@ TEST(WrittenForms, SequenceNumbersAndCommentsStayOnTheirLines) {
   }
 }
 
+// OPT-B.40: blank lines stay before numbers that are alone on their lines, and behind their
+// comments.
+TEST(WrittenForms, BlankLinesStayBesideLoneNumbers) {
+  for (const std::string text : {"     STOP\n\n10\n20   STOP\n\n\n30\n", "10  ; a\n\n     STOP\n",
+                                 "10\n\n\n20\n\n     STOP\n", "\n10\n\n; a\n\n20\n"}) {
+    EXPECT_EQ(Format(text).text, text);
+    EXPECT_FALSE(Format(text).changed) << text;
+  }
+}
+
 // printer.h: parentheses that the text needs behind a sign and behind NOT, and in TCP.
 TEST(WrittenForms, SignsAndNotNeedParentheses) {
   const auto nesting = [](const std::string& target, const std::string& value) {

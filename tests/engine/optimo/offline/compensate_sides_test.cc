@@ -89,16 +89,17 @@ TEST(CompensateSides, FindingsOfDirectivesHaveNoStep) {
   }
 }
 
-// OPT-8.20, OPT-2.23, OPT-7.33: where a contour begins is not known behind a MOVE in ROBOT, and
-// behind a hole of which a number is none.
+// OPT-8.20, OPT-2.23, OPT-7.33, OPT-B.60: where a contour begins is not known behind a MOVE in
+// ROBOT, behind ZERO, and behind a hole of which a number is none.
 TEST(CompensateSides, WhereNobodyKnowsTheStart) {
   const std::string known = "MOVE (9,8,7,0,0)\n",
                     cut = "PATH LIN\nWORK 0,0/ON\nMOVE (50,0,0,0,0)\n";
   const std::vector<std::string> said = {
       "7805: the point where this move starts is not known as numbers"};
   for (const std::string& before :
-       {std::string("COORD ROBOT\nMOVE (9,8,7,0,0)\nCOORD ABSOL\n"),
+       {std::string("COORD ROBOT\nMOVE (9,8,7,0,0)\nCOORD ABSOL\n"), known + "ZERO\n",
         std::string("PATH HOLE (5)\nMOVE (0,0,0,0,0)/VIA (0,0,5,0,0)\n"),
+        std::string("PATH HOLE (5)\nMOVE (10,0,0,0,0)/VIA (10,0,5,0,0)\n"),
         known + "PATH HOLE (VR[1])\nMOVE (0,0,0,0,0)/VIA (0,0,5,0,0)\n",
         known + "PATH HOLE (5)\nMOVE (VR[1],0,0,0,0)/VIA (0,0,5,0,0)\n",
         known + "PATH HOLE (5)\nMOVE (0,0,0,0,0)/VIA (0,VR[1],5,0,0)\n"}) {
@@ -201,6 +202,16 @@ TEST(CompensateSides, AViaPointOnTheLineOfItsMove) {
   EXPECT_EQ(LastMove(along.text),
             "MOVE (9.00000,1.00000,0.00000,0.00000,0.00000)/VIA "
             "(5.00000,1.00000,0.00000,0.00000,0.00000)");
+}
+
+// OPT-8.06, OPT-8.09: a move without a side ends the contour, also where the side must not change:
+// the way there and the way back are two of them, and no path that turns back.
+TEST(CompensateSides, AMoveThatIsNotCompensatedEndsTheContour) {
+  const std::string changes = "7803: the side changes while the beam is on";
+  EXPECT_EQ(SaidOf(Compensate(";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+                              "MOVE (10,0,0,0,0)\n;$none\nMOVE (20,0,0,0,0)\n;$left\n"
+                              "MOVE (10,0,0,0,0)\n")),
+            (std::vector<std::string>{changes, changes}));
 }
 
 // compensate.h: what the list of findings has no room for is counted.

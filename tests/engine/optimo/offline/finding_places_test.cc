@@ -138,6 +138,8 @@ TEST(ToolPlaces, OfTransformAndShift) {
       {"SPEED 5\n{MOVE (1,2,3,4,VR[1])}\n", 7851, "OPT-8.77", "a coordinate is no plain number"},
       {"{MOVE (1,2,3,0,0)/VIA (VR[1],2,3,0,0)}\n", 7851, "OPT-8.77",
        "a coordinate is no plain number"},
+      {"{MOVE (VR[1],2,3,0,0)/VIA (VR[2],2,3,0,0)}\n", 7851, "OPT-8.77",
+       "a coordinate is no plain number"},
       {"{SYSDEF (1,2,3,0,VR[1],0)}\n", 7851, "OPT-8.77", "a rotation of SYSDEF"},
       {"SPEED 5\n{MOVE (1,2,9E18,0,0)}\n", 7004, "OPT-7.62", "a number would become larger"},
   };

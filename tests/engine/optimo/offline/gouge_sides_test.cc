@@ -114,6 +114,25 @@ TEST(GougeSides, TheContourBeginsAtTheFirstCrossing) {
   EXPECT_NE(std::find(found.begin(), found.end(), 6U), found.end());
 }
 
+// gouge.h: so it does where the last move comes to the later one of the two crossings first.
+TEST(GougeSides, TheFirstCrossingIsThatOfTheWayIn) {
+  const std::vector<std::size_t> found = FoundLegs({{0, -10, 0},
+                                                    {0, 0, 0},
+                                                    {10, 0, 0},
+                                                    {10, -10, 0},
+                                                    {40, -10, 0},
+                                                    {40, 20, 0},
+                                                    {5, 20, 0},
+                                                    {5, 0.8, 0},
+                                                    {-20, 20, 0},
+                                                    {-20, -20, 0},
+                                                    {50, -20, 0},
+                                                    {50, -5, 0},
+                                                    {-20, -5, 0}},
+                                                   1.0);
+  EXPECT_NE(std::find(found.begin(), found.end(), 6U), found.end());
+}
+
 // gouge.h: a tab ends the contour at its corner: neither the way in nor the last move is an edge
 // beyond it. Both would be crossed if they went on: the way in to (-5,5), the last move to (17,0).
 TEST(GougeSides, ATabClosesAtItsCorner) {
@@ -168,6 +187,20 @@ TEST(GougeSides, AnArcTheLongWayRoundRunsBack) {
   EXPECT_TRUE(FindGouges({}, {}, 1.0).found.empty());
 }
 
+// gouge.h: the chord of an arc of 4.5 leads against the direction in which the arc begins: one that
+// has become a line leads where it was to lead all the same.
+TEST(GougeSides, AnArcOfMoreThanHalfATurnThatBecameALine) {
+  const auto at = [](double radius, double angle) {
+    return ProgramVector(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+  };
+  std::vector<Leg> legs = {StraightLeg({10, -20, 0}, at(10, 0)),
+                           StraightLeg(at(10, 0), at(10, 4.5))};
+  legs[1].via = at(10, 2.0);
+  Prepare(legs[1]);
+  ASSERT_TRUE(legs[1].is_arc);
+  EXPECT_TRUE(FindGouges(legs, {{at(9, 0), {}}, {at(9, 4.5), {}}}, 1.0).found.empty());
+}
+
 // A head of which the angles are not known stands straight down: at which height the other side of
 // the slot lies is no matter.
 TEST(GougeSides, HeightsDoNotMatterUnderAnUnknownHead) {
@@ -193,6 +226,17 @@ TEST(GougeSides, ATabEndsBeforeAnyMoveOfTheWayIn) {
     EXPECT_EQ(with_tab(1.99), std::vector<int>{}) << moves;
     EXPECT_NE(with_tab(2.01), std::vector<int>{}) << moves;
   }
+}
+
+// gouge.h: a tab ends before the end of a move, and not before the middle of one. The way in is a
+// half circle about (9,5); the last move leads towards its lowest point, (9,0), and ends 1 mm
+// before it. So the way in is an edge, and the last move comes to within 0.88 mm of it.
+TEST(GougeSides, ATabDoesNotEndInTheMiddleOfAMove) {
+  const std::vector<int> found = GougedMoves(
+      ";$rad=1\n;$left\n",
+      {FlatMove(4, 5), "PATH CIR\nMOVE (14,5,0,0,0)/VIA (9,0,0,0,0)\nPATH LIN\n", FlatMove(20, 5),
+       FlatMove(20, 20), FlatMove(0, 20), FlatMove(0, 0), FlatMove(8, 0)});
+  EXPECT_TRUE(Holds(found, 5));
 }
 
 // gouge.h: a tab is 2 mm wide at most, wherever the contour lies, and behind an arc as behind a

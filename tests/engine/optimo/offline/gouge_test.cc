@@ -336,10 +336,10 @@ TEST(Gouge, AHeadThatStandsInATurnedSystem) {
 }
 
 // A million pieces are looked at, of the contour and of the path together, so 500,001 lines of
-// each; the next one is told.
+// each; the next one is told, although another one follows it.
 TEST(Gouge, AMillionPiecesAreLookedAt) {
   constexpr std::size_t kLooked = 500'001;
-  std::vector<Leg> legs(kLooked + 1);
+  std::vector<Leg> legs(kLooked + 2);
   for (std::size_t k = 0; k < legs.size(); ++k) {
     const double x = static_cast<double>(k);
     legs[k].from = {x, 0, 0};

@@ -69,6 +69,15 @@ TEST(LiteralText, NumbersStandWhereTheyAreReplaced) {
   }
 }
 
+// OPT-7.62: a number of 401 digits is told when it is read; no double holds it, so it has no value.
+TEST(LiteralText, WhatNoDoubleHoldsHasNoValue) {
+  Findings findings;
+  const std::string text = "DELAY 1" + std::string(400, '0') + "\n";
+  const ParsedProgram program = Parse(text, findings);
+  ASSERT_EQ(program.module.instructions.size(), 1U);
+  EXPECT_FALSE(PlainNumber(program, program.module.instructions[0].first_expression));
+}
+
 // Names, variables and sums are no plain numbers.
 TEST(LiteralText, OtherExpressionsAreNoPlainNumbers) {
   for (const std::string value : {"VR[1]", "1. + 2.", "PI", "K", "SIN(1.)", "-VR[1]"}) {

@@ -138,6 +138,8 @@ TEST(SemanticDiff, StepsOfOneKindAreChanged) {
       {"WORKDEF 2,0 (11)", "WORKDEF 2,1 (11)", false},
       {"DELAY 1", "DELAY 2", true},
       {"DELAY 1", "WAIT IL[1]", false},
+      {"WORK 1,1/OFF", "CALL 2", false},
+      {"WORKDEF 1,1 (8.,75.,1.,50.)", "GO 2", false},
   };
   for (const auto& row : kRows) {
     std::vector<Kind> kinds;
@@ -177,6 +179,10 @@ TEST(SemanticDiff, AMissingNumberIsAnotherTarget) {
   EXPECT_EQ(what(there, missing), (Texts{"goes to step 2 -> missing 10"}));
   EXPECT_EQ(what(missing, there), (Texts{"goes to missing 10 -> step 2"}));
   EXPECT_EQ(what(missing, "GOTO 11\nVI[2]=1\n"), (Texts{"goes to missing 10 -> missing 11"}));
+  // The first step as well as any other.
+  const std::string first = "10 VI[2]=1\nGOTO 10\n", none = "VI[2]=1\nGOTO 10\n";
+  EXPECT_EQ(what(first, none), (Texts{"goes to step 1 -> missing 10"}));
+  EXPECT_EQ(what(none, first), (Texts{"goes to missing 10 -> step 1"}));
 }
 
 TEST(SemanticDiff, FiguresOfRunsAreCompared) {

@@ -30,6 +30,11 @@ TEST(SemanticSides, StepsInARowAreChangedOneByOne) {
       (Lines{"* 2 2 DELAY 1.0 -> DELAY 3.0", "* 3 3 LET VI[1] = 5 -> LET VI[1] = 6"}));
 }
 
+// What an instruction is counts, also where nothing stands behind its word.
+TEST(SemanticSides, OfTwoWordsOneComesAndOneGoes) {
+  EXPECT_EQ(ChangesOf("NOERR\n", "RETURN\n"), (Lines{"+ 0 1  -> RETURN", "- 1 0 NOERR -> "}));
+}
+
 TEST(SemanticSides, AChangeBehindAnAdditionIsOneOfItsOwnStep) {
   EXPECT_EQ(ChangesOf("VI[9]=1\nDELAY 1.\nOL[2]=ON\n", "VI[9]=1\nVI[1]=5\nDELAY 3.\nOL[2]=ON\n"),
             (Lines{"+ 0 2  -> LET VI[1] = 5", "* 2 3 DELAY 1.0 -> DELAY 3.0"}));
@@ -89,6 +94,25 @@ TEST(SemanticSides, SpeedCountsWhereItIsUsed) {
   EXPECT_EQ(ChangesOf("SPEED 5\nDELAY 1.\n", "SPEED 6\nDELAY 1.\n"), Lines{});
   EXPECT_EQ(ChangesOf("SPEED 5\nMOVE (VR[1],2,3,0,0)\n", "SPEED 6\nMOVE (VR[1],2,3,0,0)\n"),
             (Lines{"* 2 2 MOVE (VR[1], 2, 3, 0, 0) -> MOVE (VR[1], 2, 3, 0, 0)"}));
+}
+
+// Of several PATHs a MOVE has the last one, and that alone.
+TEST(SemanticSides, OfSeveralPathsTheLastCounts) {
+  const std::string move = "MOVE (1,2,3,0,0)\n", next = "MOVE (4,2,3,0,0)\n";
+  EXPECT_EQ(ChangesOf("PATH LIN\nPATH CIR\n" + move, "PATH CIR\n" + move), Lines{});
+  const ProgramDiff diff = Diff(MustCompile("PATH LIN\n" + move + "PATH CIR\n" + next).module,
+                                MustCompile("PATH LIN\n" + move + "PATH PTP\n" + next).module);
+  ASSERT_EQ(diff.steps.size(), 1U);
+  EXPECT_EQ(diff.steps[0].what, (Lines{"PATH CIR -> PATH PTP"}));
+}
+
+// semantic_diff.h: a jump comes to the first step from there on that both programs have: one that
+// only one of them has before it is the only change.
+TEST(SemanticSides, AJumpToAStepThatOneProgramLacks) {
+  const std::string with = "VI[9]=1\nGOTO 10\n10 VI[5]=1\nVI[2]=1\n",
+                    without = "VI[9]=1\nGOTO 10\n10 VI[2]=1\n";
+  EXPECT_EQ(ChangesOf(with, without), (Lines{"- 3 0 LET VI[5] = 1 -> "}));
+  EXPECT_EQ(ChangesOf(without, with), (Lines{"+ 0 3  -> LET VI[5] = 1"}));
 }
 
 // A zero is written as one, with either sign.

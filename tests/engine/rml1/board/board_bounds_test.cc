@@ -125,6 +125,26 @@ TEST(BoardBounds, StepsAndTheirStreamAreBounded) {
   EXPECT_EQ(large.error().detail, "more than " + std::to_string(options.bytes_max) + " bytes");
 }
 
+// As many bytes as the rounds have may be made, and not one more: the lift behind the last of them,
+// which has the speed of a rapid, and the end are not of the rounds.
+TEST(BoardBounds, BytesOfTheRounds) {
+  const Bitmap pad{.width = 3, .height = 3, .copper = {0, 0, 0, 0, 1, 0, 0, 0, 0}};
+  BoardOptions options{.pixel_mm = 1.0, .at_x_mm = 20.0, .at_y_mm = 20.0};
+  const auto made = [&] { return StreamOfBoard(pad, ParametersOf("srm-20"), options); };
+  const auto whole = made();
+  ASSERT_TRUE(whole) << whole.error().detail;
+  ASSERT_EQ(whole->loops, 1U);
+  options.bytes_max = whole->stream.rfind("!VZ30;\n");
+  ASSERT_NE(options.bytes_max, std::string::npos) << whole->stream;
+  const auto as_many = made();
+  ASSERT_TRUE(as_many) << as_many.error().detail;
+  EXPECT_EQ(as_many->stream, whole->stream);
+  --options.bytes_max;
+  const auto one_less = made();
+  ASSERT_FALSE(one_less);
+  EXPECT_EQ(one_less.error().code, ErrorCode::kRml1ProductTooLarge);
+}
+
 // What lies no further off than the tolerance is left out; the first point and the one furthest
 // from it stay.
 TEST(SimplifiedBounds, WhatIsLeftOut) {

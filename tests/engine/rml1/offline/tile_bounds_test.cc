@@ -76,6 +76,15 @@ TEST(TileBounds, WhereACopyEnds) {
             "!PZ-10,200;PU100,100;PD300,100;PU;\nPU400,100;PD600,100;PU;\n;!ZE A90;PU0,0;");
 }
 
+// Behind the lift the spindle stops once, behind the last copy, and so does the whole machine.
+TEST(TileBounds, WhatMovesNothingIsNoLift) {
+  for (const std::string last : {"!MC0;", "!NR;"}) {
+    EXPECT_EQ(
+        Tiled("!PZ-10,200;!MC1;PU100,100;PD300,100;PU;" + last + "PU0,0;", kTwo),
+        "!PZ-10,200;!MC1;PU100,100;PD300,100;PU;\nPU400,100;PD600,100;PU;\n;" + last + "PU0,0;");
+  }
+}
+
 // RML1-3A.21: with the names of mode 1 alone the lift makes coordinates absolute.
 TEST(TileBounds, NamesOfModeOne) {
   machine::Parameters old = ParametersOf("t1");
