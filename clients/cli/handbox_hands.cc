@@ -31,8 +31,9 @@ google::protobuf::Timestamp SentNow() {
 }
 
 HandboxSession::HandboxSession(const std::shared_ptr<grpc::Channel>& channel,
-                               const std::string& machine, const std::string& token)
-    : stub_(v1::HandboxService::NewStub(channel)) {
+                               const std::string& machine, const std::string& token,
+                               std::chrono::seconds patience)
+    : stub_(v1::HandboxService::NewStub(channel)), patience_(patience) {
   v1::CreateHandboxSessionRequest request;
   request.set_machine(machine);
   request.set_control_token(token);
@@ -47,7 +48,7 @@ HandboxSession::~HandboxSession() {
   request.set_name(session_.name());
   google::protobuf::Empty none;
   grpc::ClientContext context;
-  Prepare(context, HandboxHands::kPatience);
+  Prepare(context, patience_);
   static_cast<void>(stub_->DeleteHandboxSession(&context, request, &none));
 }
 
@@ -66,11 +67,12 @@ struct HandboxHands::BeatCall {
 
 HandboxHands::HandboxHands(const std::shared_ptr<grpc::Channel>& channel,
                            const std::string& session, const std::string& token,
-                           std::function<void()> answered)
+                           std::function<void()> answered, std::chrono::seconds patience)
     : stub_(v1::HandboxService::NewStub(channel)),
       session_(session),
       token_(token),
-      answered_(std::move(answered)) {}
+      answered_(std::move(answered)),
+      patience_(patience) {}
 
 HandboxHands::~HandboxHands() {
   std::unique_lock lock(mutex_);
@@ -110,7 +112,7 @@ void HandboxHands::SendNext() {
 void HandboxHands::Send(const KeyStroke& stroke, bool in_turn) {
   auto made = std::make_unique<KeyCall>();
   KeyCall* call = made.release();  // the answer owns it
-  Prepare(call->context, kPatience);
+  Prepare(call->context, patience_);
   call->request.set_session(session_);
   call->request.set_control_token(token_);
   call->request.set_key(stroke.key);
@@ -141,7 +143,7 @@ void HandboxHands::Beat(const std::set<std::string>& down) {
   }
   auto made = std::make_unique<BeatCall>();
   BeatCall* call = made.release();
-  Prepare(call->context, kPatience);
+  Prepare(call->context, patience_);
   call->request.set_session(session_);
   call->request.set_control_token(token_);
   call->request.set_number(++beats_);

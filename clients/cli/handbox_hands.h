@@ -18,14 +18,17 @@
 
 namespace rmlcell::cli {
 
+inline constexpr std::chrono::seconds kHandboxPatience{5};  // with an answer
+
 // The clock of this computer, as a heartbeat says it.
 google::protobuf::Timestamp SentNow();
 
 // One that presses: opened with control of the machine, deleted with this.
 class HandboxSession {
  public:
+  // `patience`: with the answer that it is deleted.
   HandboxSession(const std::shared_ptr<grpc::Channel>& channel, const std::string& machine,
-                 const std::string& token);
+                 const std::string& token, std::chrono::seconds patience = kHandboxPatience);
   ~HandboxSession();
   HandboxSession(const HandboxSession&) = delete;
   HandboxSession& operator=(const HandboxSession&) = delete;
@@ -35,6 +38,7 @@ class HandboxSession {
 
  private:
   std::unique_ptr<v1::HandboxService::Stub> stub_;
+  const std::chrono::seconds patience_;
   grpc::Status status_;
   v1::HandboxSession session_;
 };
@@ -55,11 +59,11 @@ struct KeyAnswer {
 class HandboxHands {
  public:
   static constexpr std::size_t kWaitingMax = 32;  // more than anybody types ahead; then: forgotten
-  static constexpr std::chrono::seconds kPatience{5};  // with an answer
 
   // `answered` is called on threads of gRPC.
   HandboxHands(const std::shared_ptr<grpc::Channel>& channel, const std::string& session,
-               const std::string& token, std::function<void()> answered);
+               const std::string& token, std::function<void()> answered,
+               std::chrono::seconds patience = kHandboxPatience);
   ~HandboxHands();  // waits for what is under way, gives up what waits
   HandboxHands(const HandboxHands&) = delete;
   HandboxHands& operator=(const HandboxHands&) = delete;
@@ -83,6 +87,7 @@ class HandboxHands {
   const std::string session_;
   const std::string token_;
   const std::function<void()> answered_;
+  const std::chrono::seconds patience_;
   std::int64_t sequence_ = 0;
   std::int64_t beats_ = 0;
   std::deque<KeyStroke> waiting_{};

@@ -110,8 +110,9 @@ grpc::Status HoldOne(Keys& keys, const std::string& name, double seconds) {
   if (const grpc::Status pressed = PressOne(keys, name, v1::KEY_ACTION_PRESS); !pressed.ok())
     return pressed;
   keys.beat().add_keys_down(name);
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  for (auto next = std::chrono::steady_clock::now(); next < until; next += kBetweenBeats) {
+  const auto first = std::chrono::steady_clock::now();
+  const auto until = first + std::chrono::duration<double>(seconds);
+  for (auto next = first; next < until; next += kBetweenBeats) {
     std::this_thread::sleep_until(next);
     keys.beat().set_number(keys.beat().number() + 1);
     *keys.beat().mutable_sent() = SentNow();
@@ -163,7 +164,7 @@ int PressKeys(const Remote& remote, const MachineAct& act) {
   const Control control(remote, act, kControl_s);
   if (!control.status().ok()) return Refused(control.status(), remote);
   const std::string machine = FullName("machines", act.machine);
-  const HandboxSession handbox(Connect(remote), machine, control.token());
+  const HandboxSession handbox(Connect(remote), machine, control.token(), remote.short_patience);
   if (handbox.status().ok())
     return PressAll(remote, act, control, HandboxKeys(remote, handbox.session(), control.token()));
   return PressAll(remote, act, control, PanelKeys(remote, machine, control.token()));

@@ -79,8 +79,9 @@ class Control {
     request.set_machine(FullName("machines", act_.machine));
     request.set_control_token(token_);
     google::protobuf::Empty none;
+    // Whoever ends is not kept by a server that has gone: control runs out by itself.
     static_cast<void>(
-        Call(remote_, &Service::Stub::ReleaseControl, request, none, kGivingBackPatience));
+        Call(remote_, &Service::Stub::ReleaseControl, request, none, remote_.short_patience));
   }
   Control(const Control&) = delete;
   Control& operator=(const Control&) = delete;
@@ -98,9 +99,6 @@ class Control {
   }
 
  private:
-  // Whoever ends is not kept by a server that has gone: control runs out by itself.
-  static constexpr std::chrono::seconds kGivingBackPatience{5};
-
   const Remote& remote_;
   const MachineAct& act_;
   grpc::Status status_;

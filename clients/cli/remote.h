@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,6 +14,8 @@ namespace rmlcell::cli {
 struct Remote {
   std::string server = "127.0.0.1:50051";  // host:port or unix:/path
   bool json = false;
+  // With an answer that nobody is kept for: how a machine stands, what is given back.
+  std::chrono::seconds short_patience{5};
 };
 
 int Machines(const Remote& remote);

@@ -191,11 +191,11 @@ int ShowOwn(const Remote& remote, v1::MachineStatus status) {
 }
 
 std::optional<v1::MachineStatus> StatusNow(const Remote& remote, const std::string& machine) {
-  constexpr std::chrono::seconds kPatience{5};
   v1::GetMachineRequest request;
   request.set_name(FullName("machines", machine));
   v1::Machine now;
-  if (!Call(remote, &Service::Stub::GetMachine, request, now, kPatience).ok()) return {};
+  if (!Call(remote, &Service::Stub::GetMachine, request, now, remote.short_patience).ok())
+    return {};
   return now.status();
 }
 

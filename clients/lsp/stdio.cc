@@ -83,7 +83,8 @@ class Parent {
 
 class Session {
  public:
-  Session(int input, int output) : input_(input), output_(output), server_(folder_) {}
+  Session(int input, int output, milliseconds patience)
+      : input_(input), output_(output), patience_(patience), server_(folder_) {}
 
   int Run() {
     while (!server_.exit_code()) {
@@ -156,16 +157,16 @@ class Session {
   // What is answered is still sent, as long as somebody reads.
   int Finish(int code) {
     unsent_ += server_.TakeOutput();
-    constexpr int kPatience_ms = 2000;
     while (pending() > 0) {
       pollfd wire{output_, POLLOUT, 0};
-      if (poll(&wire, 1, kPatience_ms) <= 0 || !Write()) return 1;
+      if (poll(&wire, 1, static_cast<int>(patience_.count())) <= 0 || !Write()) return 1;
     }
     return code;
   }
 
   int input_;
   int output_;
+  milliseconds patience_;
   DiskFolder folder_;
   Server server_;
   Parent parent_;
@@ -178,7 +179,7 @@ class Session {
 
 }  // namespace
 
-int RunOnDescriptors(int input, int output) {
+int RunOnDescriptors(int input, int output, milliseconds patience) {
   // A client that went away is an error of write, not the end of the process.
   struct sigaction ignore {};
   struct sigaction before {};
@@ -187,7 +188,7 @@ int RunOnDescriptors(int input, int output) {
   int code = 1;
   {
     const WithoutWaiting scope(output);
-    code = Session(input, output).Run();
+    code = Session(input, output, patience).Run();
   }
   sigaction(SIGPIPE, &before, nullptr);
   return code;

@@ -481,17 +481,8 @@ void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) 
   v1::HostResponse message;
   *message.mutable_order() = std::move(order);
   if (RunsPrograms(message.order())) {
-    // Whoever has stored a program, and was told so, may begin it.
     auto waits = std::make_shared<v1::HostResponse>(std::move(message));
-    return needs_.executor.Post([this, host, waits] {
-      LookAtMemory(true);
-      {
-        const std::lock_guard lock(host->mutex);
-        // Who was told meanwhile that nobody answers is not to see it begin.
-        if (!host->pending.contains(waits->order().number())) return;
-      }
-      host->link->Send(std::move(*waits));
-    });
+    return needs_.executor.Post([this, host, waits] { SendBehindMemory(host, std::move(*waits)); });
   }
   host->link->Send(std::move(message));
   if (lost) done(NotLive(kHaltsUnseen));

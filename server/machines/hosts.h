@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -135,7 +136,8 @@ class Hosts {
   Status Welcome(const HostPointer& host, const v1::HostHello& hello, const Taken& taken);
   Status TellRecovery(const Host& host, const Taken& taken,
                       const std::optional<v1::MachineMark>& mark);
-  void SendMemory(const HostPointer& host);
+  void SendMemory(const HostPointer& host);  // with looking_ held: in the order of what was stored
+  void SendBehindMemory(const HostPointer& host, v1::HostResponse order);
   void StoreEdit(const HostPointer& host, v1::HostEdit edit);
   void TakePanel(const HostPointer& host, v1::HandboxPanel panel);
   void AnswerHeartbeat(const HostPointer& host, std::int64_t number);
@@ -185,6 +187,7 @@ class Hosts {
   std::map<std::string, Off> off_;      // guarded by mutex_
   std::map<std::string, Given> given_;  // by machine; guarded by joining_
   std::int64_t looked_until_ = 0;       // of the log; guarded by looking_
+  std::set<std::string> unsent_;        // whose memory could not be read; guarded by looking_
   std::mutex looking_;
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };

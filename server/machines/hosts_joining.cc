@@ -146,7 +146,10 @@ Status Hosts::Join(const std::shared_ptr<HostLink>& link, const v1::HostHello& h
   if (before != nullptr && before->link != link)
     before->link->Close(NotLive("the host has another line"));
   if (before != nullptr) HandOver(*before, *host);
-  SendMemory(host);
+  {
+    const std::lock_guard looking(looking_);  // what is stored meanwhile is sent behind it
+    SendMemory(host);
+  }
   spdlog::info("{} has the host {}, fence {}", hello.machine(), hello.host(), host->lease.fence);
   Changed();
   RunOver(host->id);

@@ -20,8 +20,10 @@ void Hosts::SendMemory(const HostPointer& host) {
       needs_.store.GetMachineMemory(host->id, [](const storage::MachineRecord&) { return true; });
   if (!memory) {
     spdlog::warn("memory of {}: {}", host->id, bridge::ErrorText(memory.error()));
+    unsent_.insert(host->id);
     return;
   }
+  unsent_.erase(host->id);
   v1::HostResponse message;
   *message.mutable_memory() = MemoryOf(*memory);
   host->link->Send(std::move(message));
@@ -35,10 +37,11 @@ void Hosts::LookAtMemory(bool at_once) {
     const std::lock_guard lock(mutex_);
     if (hosts_.empty()) {  // who joins is sent all of it
       looked_until_ = needs_.feed.position();
+      unsent_.clear();
       return;
     }
   }
-  std::set<std::string> changed;
+  std::set<std::string> changed = unsent_;
   for (;;) {
     const auto events = at_once ? needs_.store.AllEvents(looked_until_, kMemoryReadAhead)
                                 : needs_.feed.EventsAfter(looked_until_, kMemoryReadAhead);
@@ -62,6 +65,27 @@ void Hosts::LookAtMemory(bool at_once) {
   for (const std::string& id : changed) {
     if (const HostPointer host = Find(id)) SendMemory(host);
   }
+}
+
+// Whoever has stored a program, and was told so, may begin it.
+void Hosts::SendBehindMemory(const HostPointer& host, v1::HostResponse order) {
+  LookAtMemory(true);
+  bool known = false;
+  {
+    const std::lock_guard looking(looking_);
+    known = !unsent_.contains(host->id);
+  }
+  Answered refused;
+  {
+    const std::lock_guard lock(host->mutex);
+    // Who was told meanwhile that nobody answers is not to see it begin.
+    const auto asked = host->pending.find(order.order().number());
+    if (asked == host->pending.end()) return;
+    if (!known) refused = host->pending.extract(asked).mapped().done;
+  }
+  if (known) return host->link->Send(std::move(order));
+  // It would begin what was stored before. LIVE-5.03
+  refused(Error{ErrorCode::kCellStoreFailed, "what is stored there cannot be read", {}});
 }
 
 // What was taught at the machine. Its host hears of it as of anything that is stored. LIVE-7.08

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "server/base/names.h"
@@ -29,11 +30,13 @@ MachineStatuses::MachineStatuses(storage::Store& store, EventFeed& feed, Executo
     });
   }
   subscription_ = feed_.Subscribe(std::string(EventFeed::kEverything), [this] { Woken(); });
+  count_ = store_.Watch([this] { Woken(); });
   Woken();
 }
 
 MachineStatuses::~MachineStatuses() {
   if (hosts_ != nullptr) hosts_->OnChange({});
+  count_.reset();
   subscription_.reset();
   std::unique_lock lock(mutex_);
   rests_.wait(lock, [this] { return !looking_; });
@@ -61,9 +64,10 @@ void MachineStatuses::Look() {
       again_ = false;
     }
     const bool host_changed = host_changed_.exchange(false);
-    if (!ChangedSinceLastLook() && !host_changed) continue;
-    const auto machines = machines_.List();
+    const bool changed = ChangedSinceLastLook();
     const auto unfinished = store_.UnfinishedJobs();
+    if (unfinished && !changed && !host_changed && !IsCountedOtherwise(*unfinished)) continue;
+    const auto machines = machines_.List();
     if (!machines || !unfinished) {
       first_ = true;  // the next event brings a whole look
       continue;
@@ -86,7 +90,15 @@ void MachineStatuses::Look() {
       if (!now.contains(name) && !hosted.contains(name)) feed_.Forget(name);
     }
     told_ = std::move(now);
+    counted_ = *unfinished;
   }
+}
+
+bool MachineStatuses::IsCountedOtherwise(const std::vector<storage::MachineJobs>& jobs) const {
+  const auto all = [](const storage::MachineJobs& one) {
+    return std::tie(one.machine, one.unfinished, one.oldest_running);
+  };
+  return !std::ranges::equal(jobs, counted_, {}, all, all);
 }
 
 bool MachineStatuses::ChangedSinceLastLook() {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "server/base/executor.h"
 #include "server/events/event_feed.h"
@@ -30,6 +31,7 @@ class MachineStatuses {
   void Woken();
   void Look();
   bool ChangedSinceLastLook();
+  bool IsCountedOtherwise(const std::vector<storage::MachineJobs>& jobs) const;
 
   storage::Store& store_;
   KnownMachines machines_;
@@ -43,9 +45,12 @@ class MachineStatuses {
   std::atomic<bool> host_changed_ = false;
   // Of the look alone.
   bool first_ = true;
-  std::int64_t position_ = 0;                // events up to here are accounted for
+  std::int64_t position_ = 0;  // events up to here are accounted for
+  std::vector<storage::MachineJobs> counted_;
   std::map<std::string, std::string> told_;  // by name of the machine
   std::unique_ptr<EventFeed::Subscription> subscription_;
+  // The feed may have read what the store has not counted yet: its own word comes behind that.
+  std::unique_ptr<storage::Store::Subscription> count_;
 };
 
 }  // namespace rmlcell::server

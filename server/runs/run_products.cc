@@ -143,8 +143,8 @@ bool RunProducts::LookAt(const std::string& machine, const std::stop_token& stop
       continue;
     const Status made = Make(job, stop);
     if (made || stop.stop_requested()) continue;
-    // A host that is not heard of says when it is again.
-    if (made.error().code == ErrorCode::kCellNotLive) return true;
+    // A host without a line says when it has one again; one that is silent does not.
+    if (made.error().code == ErrorCode::kCellNotLive) return !needs_.hosts.IsHeard(machine);
     if (storage::IsTroubleOfTheStore(made.error())) return false;
     given_up_.insert(job.id);
     spdlog::warn("no report of {}: {}", JobName(job.id), bridge::ErrorText(made.error()));

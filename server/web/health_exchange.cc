@@ -9,8 +9,6 @@
 namespace rmlcell::web {
 namespace {
 
-constexpr std::chrono::seconds kPatience{2};
-
 class HealthExchange : public Exchange, public std::enable_shared_from_this<HealthExchange> {
  public:
   HealthExchange(const Gateway& gateway, std::shared_ptr<Connection> connection)
@@ -23,7 +21,7 @@ class HealthExchange : public Exchange, public std::enable_shared_from_this<Heal
         {.method = "/grpc.health.v1.Health/Check",
          .message = {},
          .metadata = {{"rmlcell-web-secret", gateway_.rules.secret}},
-         .timeout = kPatience},
+         .timeout = gateway_.options.health_timeout},
         {.on_message =
              [self](std::string bytes) {
                self->poster_->Post([self, bytes = std::move(bytes)] { self->TakeMessage(bytes); });

@@ -37,6 +37,8 @@ struct WebOptions {
   // For a client that was refused to come to its end, and for the answer of one that ended its
   // sending.
   std::chrono::milliseconds linger_timeout{2000};
+  // For the server to say how it is; /healthz answers that it is not well when it does not.
+  std::chrono::milliseconds health_timeout{2000};
 
   std::vector<std::string> host_names;  // names, besides loopback and `address`, that Host may have
   std::vector<std::string> origins;     // foreign pages that may call: "http://localhost:5173"

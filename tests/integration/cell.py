@@ -7,6 +7,7 @@ import pathlib
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -43,16 +44,25 @@ COMPLETED = 1
 FAILED = 3
 
 
+def free_port():
+    """A port that nobody else is given while this socket is there: a server listens on it, and the next one, too."""
+    port = socket.socket()
+    port.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    port.bind(("127.0.0.1", 0))
+    return port
+
+
 class Cell:
-    """One server. Its state survives stop() and kill() until close()."""
+    """One server. Its state and its ports survive stop() and kill() until close()."""
 
     def __init__(self, *flags, workers=2):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rmlcell-"))
         self.flags = list(flags)
         self.workers = workers
         self.process = None
-        self.grpc_port = 0
-        self.web_port = 0
+        # The same ports again after a restart, as a real server has.
+        self.ports = [free_port(), free_port()]
+        self.grpc_port, self.web_port = (port.getsockname()[1] for port in self.ports)
 
     def start(self):
         log = self.folder / "log"
@@ -69,10 +79,6 @@ class Cell:
             if self.process.poll() is not None or time.monotonic() > until:
                 raise RuntimeError("the server did not start:\n" + log.read_text(errors="replace")[-3000:])
             time.sleep(0.02)
-        text = log.read_text(errors="replace")
-        # The same ports again after a restart, as a real server has.
-        self.grpc_port = int(re.search(r"gRPC on 127\.0\.0\.1:(\d+)", text).group(1))
-        self.web_port = int(re.search(r"web on http://127\.0\.0\.1:(\d+)/", text).group(1))
         return self
 
     @property
@@ -100,6 +106,8 @@ class Cell:
                 self.process.wait(timeout=60)
             except subprocess.TimeoutExpired:
                 self.process.kill()
+        for port in self.ports:
+            port.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def worker_processes(self):

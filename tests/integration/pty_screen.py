@@ -20,6 +20,7 @@ class Terminal:
 
     def __init__(self, rows=ROWS, columns=COLUMNS):
         self.master, self.slave = pty.openpty()
+        self.drawing = threading.Lock()  # held while the screen is another one than before
         self.resize(rows, columns)
         self.before = termios.tcgetattr(self.slave)
         self.answers = True  # to the question whether it is there
@@ -31,7 +32,8 @@ class Terminal:
         self.reader.start()
 
     def resize(self, rows, columns):
-        self.cells = [[" "] * columns for _ in range(rows)]
+        with self.drawing:
+            self.cells = [[" "] * columns for _ in range(rows)]
         fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
     def start(self, *words):
@@ -96,7 +98,8 @@ class Terminal:
             if not sent:
                 return
             self.seen += sent
-            pending = self.draw(pending + sent)
+            with self.drawing:
+                pending = self.draw(pending + sent)
 
     def draw(self, sent):
         """Returns what is no whole sequence yet."""
@@ -128,7 +131,8 @@ class Terminal:
         elif name == "J":
             self.cells = [[" "] * len(row) for row in self.cells]
         elif name == "K":
-            self.cells[self.row][self.column:] = [" "] * (len(self.cells[0]) - self.column)
+            if self.row < len(self.cells):  # it may have been drawn for more of them
+                self.cells[self.row][self.column:] = [" "] * (len(self.cells[0]) - self.column)
         elif name == "n" and numbers == "5" and self.answers:
             self.type("\x1b[0n")
         elif name != "m" and not (name == "n" and numbers == "5"):

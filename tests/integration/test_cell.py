@@ -206,6 +206,7 @@ class Jobs(WithCell):
         self.assertEqual(first.name, again.name)
         self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=inline_job("mill-1", "b.rml", "PU;"), request_id=request_id),
                      grpc.StatusCode.ALREADY_EXISTS, "CELL-E9019")
+        wait_for_end(stub, first.name)  # it is told of in no other test
 
     def test_a_repeated_request_has_its_job_also_when_the_program_is_gone(self):
         stub, name = self.cell.jobs(), "machines/mill-1/programs/51"
@@ -218,6 +219,7 @@ class Jobs(WithCell):
         self.assertEqual(submit(stub, job, request_id).name, first.name)
         self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=job, request_id=str(uuid.uuid4())),
                      grpc.StatusCode.NOT_FOUND, "CELL-E9004")
+        wait_for_end(stub, first.name)  # it is told of in no other test
 
     def test_programs_of_a_job_leave_nothing_behind(self):
         stub, programs = self.cell.jobs(), self.cell.programs()

@@ -12,6 +12,7 @@ import time
 import unittest
 
 from cell import BIN, eventually, grpc, times_awake
+from live import stopped
 from pty_screen import Terminal
 from told_machine import ToldMachine
 
@@ -158,6 +159,8 @@ class HandboxScreenTest(unittest.TestCase):
         self.machine.answers["PressKey"] = {}
         terminal.type("7")
         self.assertTrue(eventually(lambda: "OPT-E12" not in terminal.text()), terminal.text())
+        # From the press on, and not from the answer: the next one waits for that.
+        self.assertTrue(eventually(lambda: "7 TAP" in self.machine.pressed()), self.machine.pressed())
         self.machine.refused["PressKey"] = (grpc.StatusCode.FAILED_PRECONDITION, "the door is open")
         terminal.mouse("x X+", True)
         self.assertTrue(terminal.shows("  X+: the door is open"), terminal.text())
@@ -201,16 +204,31 @@ class HandboxScreenTest(unittest.TestCase):
             self.assertEqual((fields["keysDown"], fields["controlToken"]), (["Y+"], "t"))
             self.assertEqual(fields["session"], "machines/m/handboxSessions/1")
 
+    def times(self, key, action):
+        return self.machine.pressed().count(f"{key} {action}")
+
+    def hold(self, terminal, button, key):
+        """With the mouse. A terminal of a busy machine may answer too late, and it is let go: then it is pressed again."""
+        def is_down():
+            before = self.times(key, "PRESS")
+            terminal.mouse(button, True)
+            return eventually(lambda: self.times(key, "PRESS") > before, 5) and self.times(key, "PRESS") > self.times(key, "RELEASE")
+        self.assertTrue(eventually(is_down), self.machine.pressed())
+
+    def assert_goes_up(self, key):
+        """As often as it went down, and nothing else was pressed."""
+        self.assertTrue(eventually(lambda: self.times(key, "PRESS") == self.times(key, "RELEASE")), self.machine.pressed())
+        self.assertEqual(self.machine.pressed(), ", ".join([f"{key} PRESS, {key} RELEASE"] * self.times(key, "PRESS")))
+
     # A key that is down goes up before the end, and the axes are awaited.
     def test_the_end_lets_go(self):
         terminal = self.on_screen()
-        terminal.mouse("b B+", True)
-        self.assertTrue(eventually(lambda: self.machine.pressed() == "B+ PRESS"))
+        self.hold(terminal, "b B+", "B+")
         self.machine.is_now(state="MACHINE_STATE_JOGGING")
         self.assertTrue(terminal.shows(" JOGGING "), terminal.text())
         terminal.type("q")
         self.assertTrue(eventually(lambda: len(self.machine.all_of("GetMachine")) > 2))
-        self.assertEqual(self.machine.pressed(), "B+ PRESS, B+ RELEASE")
+        self.assert_goes_up("B+")
         self.assertEqual(self.machine.all_of("ReleaseControl"), [])
         self.machine.is_now(state="MACHINE_STATE_IDLE")
         self.assert_ended(terminal, 0)
@@ -219,10 +237,9 @@ class HandboxScreenTest(unittest.TestCase):
     # Another window is typed into: nobody is there.
     def test_who_looks_away_lets_go(self):
         terminal = self.on_screen()
-        terminal.mouse("c C+", True)
-        self.assertTrue(eventually(lambda: self.machine.pressed() == "C+ PRESS"))
+        self.hold(terminal, "c C+", "C+")
         terminal.type("\x1b[O")
-        self.assertTrue(eventually(lambda: self.machine.pressed() == "C+ PRESS, C+ RELEASE"))
+        self.assert_goes_up("C+")
         self.assertIsNone(terminal.process.poll())
 
     # LIVE-7.05
@@ -421,7 +438,14 @@ class HandboxScreenTest(unittest.TestCase):
         terminal = self.on_screen()
         (inner,) = terminal.inner()
         os.kill(inner, signal.SIGSTOP)
-        terminal.type("rm -r\n")
+        self.assertTrue(eventually(lambda: stopped(inner)))
+        typed = "rm -r\n"
+        terminal.type(typed)
+
+        def to_be_read():
+            return struct.unpack("i", fcntl.ioctl(terminal.slave, termios.FIONREAD, bytes(4)))[0]
+        # A terminal hands on what is typed a moment later.
+        self.assertTrue(eventually(lambda: to_be_read() >= len(typed)), to_be_read())
         os.kill(inner, signal.SIGKILL)
         self.assert_ended(terminal, 3)
         os.set_blocking(terminal.slave, False)

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import unittest
 
-from cell import Cell
+from cell import Cell, awaited
 from command import BIN, InFolder
 
 MIB = 1024  # ru_maxrss and /proc count in KiB
@@ -117,8 +117,9 @@ class Memory(InFolder):
         cell = Cell("--workers.paced", "0", workers=1)
         self.addCleanup(cell.close)
         cell.start()
-        found = subprocess.run(["pgrep", "-P", str(cell.process.pid), "rmlcell-worker"], capture_output=True, text=True)
-        [worker] = found.stdout.split()
+        # The server is ready before a thread of it has started its worker, which has its name a moment later.
+        [worker] = awaited(lambda: subprocess.run(["pgrep", "-P", str(cell.process.pid), "rmlcell-worker"],
+                                                  capture_output=True, text=True).stdout.split())
 
         def peak():
             with open(f"/proc/{worker}/status", encoding="ascii") as status:

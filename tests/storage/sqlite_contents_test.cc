@@ -302,20 +302,27 @@ TEST_F(SqliteContents, LeftoversOfAKilledProcessGoAtTheNextStart) {
   EXPECT_TRUE(Must(store().GetProgram("m", 1)).object == Noise(2 * kMiB, 1));
 }
 
-// A large program goes in piece by piece: small writes get in between.
+// A large program goes in piece by piece: small writes get in between. The answer of each asks for
+// the next one, so that one waits at any time, whichever thread stands still.
 TEST_F(SqliteContents, LargeProgramDoesNotHoldUpSmallWrites) {
   Must(store().PutMachine({.id = "m"}, 0));
   const std::string object = Noise(64 * kMiB, 1);
   std::atomic<bool> done = false;
-  std::jthread writer([&] {
-    PutProgram(1, object);
-    done = true;
-  });
-  int between = 0;
-  while (!done) {
-    Must(store().SubmitAndWait({.kind = "CHECK"}));
-    if (!done) ++between;
-  }
+  std::atomic<int> between = 0;
+  std::promise<void> over;
+  std::function<void()> write_small;
+  write_small = [&] {
+    store().Submit({.kind = "CHECK"}, [&](const Result<SubmittedJob>& made) {
+      EXPECT_TRUE(made);
+      if (done || !made) return over.set_value();
+      ++between;
+      write_small();
+    });
+  };
+  write_small();
+  PutProgram(1, object);
+  done = true;
+  over.get_future().wait();
   EXPECT_GE(between, 8);  // of at least 16 pieces of 4 MiB
 }
 

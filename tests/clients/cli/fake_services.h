@@ -2,6 +2,7 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,7 +31,10 @@ class FakeServer {
   FakeServer& operator=(const FakeServer&) = delete;
   ~FakeServer() { server_->Shutdown(); }
 
-  Remote remote(bool json = false) const { return {.server = address_, .json = json}; }
+  // Only a failing test has the patience.
+  Remote remote(bool json = false) const {
+    return {.server = address_, .json = json, .short_patience = std::chrono::minutes(1)};
+  }
 
  private:
   std::string address_;

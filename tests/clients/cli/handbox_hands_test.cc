@@ -107,14 +107,16 @@ class HandboxHandsTest : public testing::Test {
   CliFolder folder_;
   FakeHandbox handbox_;
   FakeServer server_{folder_, {&handbox_}};
+  // Keys stay without an answer for as long as a test takes.
   HandboxHands hands_{Connect(server_.remote()), "machines/optimo-1/handboxSessions/1", "token",
-                      [] {}};
+                      [] {}, std::chrono::minutes(1)};
   std::vector<KeyAnswer> answers_;
 };
 
 TEST_F(HandboxHandsTest, ASessionIsDeletedWithItsHands) {
   {
-    const HandboxSession session(Connect(server_.remote()), "machines/optimo-1", "token");
+    const HandboxSession session(Connect(server_.remote()), "machines/optimo-1", "token",
+                                 std::chrono::minutes(1));
     ASSERT_TRUE(session.status().ok());
     EXPECT_EQ(session.session().name(), "machines/optimo-1/handboxSessions/1");
     EXPECT_EQ(handbox_.deleted(), "");

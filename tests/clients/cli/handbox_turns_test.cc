@@ -75,8 +75,9 @@ class HandboxTurns : public testing::Test {
   CliFolder folder_;
   SlowHandbox handbox_;
   FakeServer server_{folder_, {&handbox_}};
+  // JOB stays without an answer for as long as a test takes.
   HandboxHands hands_{Connect(server_.remote()), "machines/optimo-1/handboxSessions/1", "token",
-                      [] {}};
+                      [] {}, std::chrono::minutes(1)};
 };
 
 // LIVE-7.04: ENT waits for the answer to JOB, whoever else is answered, and HOLD forgets it.

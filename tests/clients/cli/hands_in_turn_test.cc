@@ -112,8 +112,10 @@ class HandsInTurn : public testing::Test {
   FakeServer server_{folder_, {&handbox_}};
   std::atomic<int> told_ = 0;
   std::shared_ptr<grpc::Channel> channel_ = Connect(server_.remote());
+  // Keys stay without an answer for as long as a test takes.
   std::unique_ptr<HandboxHands> hands_ = std::make_unique<HandboxHands>(
-      channel_, "machines/m/handboxSessions/1", "token", [this] { ++told_; });
+      channel_, "machines/m/handboxSessions/1", "token", [this] { ++told_; },
+      std::chrono::minutes(1));
   std::size_t answered_ = 0;
 };
 
@@ -146,7 +148,7 @@ TEST_F(HandsInTurn, EachCallHasItsTime) {
   EXPECT_EQ(handbox_.beat.session(), "machines/m/handboxSessions/1");
   EXPECT_EQ(handbox_.beat.control_token(), "token");
   {
-    const HandboxSession session(channel_, "machines/m", "token");
+    const HandboxSession session(channel_, "machines/m", "token", std::chrono::minutes(1));
     EXPECT_TRUE(session.status().ok());
   }
   EXPECT_EQ(handbox_.Heard(24), "X+ beat create delete s ");
@@ -156,7 +158,7 @@ TEST_F(HandsInTurn, EachCallHasItsTime) {
 TEST_F(HandsInTurn, ASessionThatIsRefusedIsNone) {
   handbox_.refusal = {grpc::StatusCode::FAILED_PRECONDITION, "no handbox"};
   {
-    const HandboxSession session(channel_, "machines/m", "token");
+    const HandboxSession session(channel_, "machines/m", "token", std::chrono::minutes(1));
     EXPECT_EQ(session.status().error_message(), "no handbox");
   }
   EXPECT_EQ(handbox_.Heard(7), "create ");

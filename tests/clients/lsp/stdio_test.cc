@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <future>
@@ -114,9 +115,10 @@ class Stdio : public testing::Test {
     if (session_.joinable()) session_.join();
   }
 
-  void Begin() {
+  // `patience`: with a test that stands still behind the end of the session.
+  void Begin(std::chrono::milliseconds patience = std::chrono::minutes(1)) {
     std::packaged_task<int()> run(
-        [this] { return RunOnDescriptors(wires_.input(), wires_.output()); });
+        [this, patience] { return RunOnDescriptors(wires_.input(), wires_.output(), patience); });
     code_ = run.get_future();
     session_ = std::thread(std::move(run));
   }
@@ -255,7 +257,7 @@ TEST_F(Stdio, AnExitThatCannotBeAnsweredIsAnError) {
 
 // A client that lives and reads nothing is not waited for for ever.
 TEST_F(Stdio, AClientThatNeverReadsIsLeft) {
-  Begin();
+  Begin(kLastPatience);
   Initialize();
   Send(std::string(300'000, 'm'), Json::object(), 2);
   Send("shutdown", nullptr, 3);

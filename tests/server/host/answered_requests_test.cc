@@ -1,6 +1,8 @@
 // Requests that are repeated, also behind a crash of the host (live.md 3.27).
 #include "server/host/answered_requests.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 
 #include "proto/bridge/encoding.h"
@@ -136,7 +138,7 @@ v1::JournalEntry Entry(std::int64_t sequence, std::int64_t second) {
 
 // LIVE-3.27, LIVE-3.24: answers that may still be asked for outlive the trimming of the journal.
 TEST(AnsweredJournal, AnswersOutliveWhatIsStored) {
-  const std::string path = testing::TempDir() + "/answered.journal";
+  const std::string path = testing::TempDir() + "/answered-" + std::to_string(::getpid());
   std::filesystem::remove(path);
   auto opened = Journal::Open(path);
   ASSERT_TRUE(opened);
@@ -167,6 +169,7 @@ TEST(AnsweredJournal, AnswersOutliveWhatIsStored) {
   EXPECT_EQ(again->torn_bytes, 0);
   // What was kept is dropped in its turn.
   EXPECT_EQ(again->entries.front().sequence(), 2);
+  std::filesystem::remove(path);
 }
 
 // LIVE-3.27: what halts, and what only asks, needs no memory beyond its host; what proves something

@@ -27,10 +27,8 @@ class FakeHostServer final : public v1::HostService::Service {
     builder.RegisterService(this);
     server_ = builder.BuildAndStart();
   }
-  ~FakeHostServer() override {
-    EndLine();
-    server_->Shutdown();
-  }
+  // All lines end with it, also one that is taken up again at this moment.
+  ~FakeHostServer() override { server_->Shutdown(std::chrono::system_clock::now()); }
   grpc::Status Host(grpc::ServerContext* context,
                     grpc::ServerReaderWriter<v1::HostResponse, v1::HostRequest>* stream) override {
     v1::HostRequest request;
@@ -39,7 +37,7 @@ class FakeHostServer final : public v1::HostService::Service {
       const std::lock_guard lock(mutex_);
       told_.push_back(request);
       changed_.notify_all();
-      if (!refusal.ok()) return refusal;
+      if (!refusal_.ok()) return refusal_;
       v1::HostResponse response;
       *response.mutable_welcome() = welcome_;
       stream->Write(response);
@@ -71,6 +69,11 @@ class FakeHostServer final : public v1::HostService::Service {
   void Welcome(const v1::HostWelcome& welcome) {
     const std::lock_guard lock(mutex_);
     welcome_ = welcome;
+  }
+  // Whoever comes from now on; it may be one that comes again and again.
+  void Refuse(const grpc::Status& refusal) {
+    const std::lock_guard lock(mutex_);
+    refusal_ = refusal;
   }
   void Tell(const v1::HostResponse& response) {
     std::unique_lock lock(mutex_);
@@ -111,7 +114,6 @@ class FakeHostServer final : public v1::HostService::Service {
   }
   const std::string& address() const { return address_; }
 
-  grpc::Status refusal{};
   bool orders_at_once = false;  // with its welcome
 
  private:
@@ -130,6 +132,7 @@ class FakeHostServer final : public v1::HostService::Service {
   std::condition_variable changed_;
   std::vector<v1::HostRequest> told_;
   v1::HostWelcome welcome_ = OfFence7();
+  grpc::Status refusal_{};  // guarded by mutex_, as all of these
   grpc::ServerReaderWriter<v1::HostResponse, v1::HostRequest>* stream_ = nullptr;
   grpc::ServerContext* context_ = nullptr;
   int ended_ = 0;

@@ -141,13 +141,13 @@ TEST_F(HostProcessTest, OneWithoutAMachineJustEnds) {
 }
 
 TEST_F(HostProcessTest, OneThatIsNotTakenEnds) {
-  server_->refusal = {grpc::StatusCode::ABORTED, "it is taken"};
+  server_->Refuse({grpc::StatusCode::ABORTED, "it is taken"});
   Run();
   EXPECT_EQ(host_.get(), 3);
-  server_->refusal = {grpc::StatusCode::UNAUTHENTICATED, "who are you"};
+  server_->Refuse({grpc::StatusCode::UNAUTHENTICATED, "who are you"});
   Run();
   EXPECT_EQ(host_.get(), 69);
-  server_->refusal = {grpc::StatusCode::FAILED_PRECONDITION, "of another version"};
+  server_->Refuse({grpc::StatusCode::FAILED_PRECONDITION, "of another version"});
   Run();
   EXPECT_EQ(host_.get(), 69);
 }

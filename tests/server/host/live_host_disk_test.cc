@@ -26,6 +26,24 @@ class LiveHostDisk : public LiveHost {
   void StandForAWhile() {
     server_->Told(v1::HostRequest::kStatus, Count(v1::HostRequest::kStatus) + 3);
   }
+  // The square, until it runs and is not late. A computer that is slow for a second holds it before
+  // that is told: then once more.
+  void RunOnADiskThatAnswers() {
+    AskUntilItActs(StartOf());
+    const auto is_told = [](const v1::MachineStatus& one) {
+      const bool runs = one.state() == v1::MACHINE_STATE_RUNNING;
+      return !IsLate(one) && (runs || one.state() == v1::MACHINE_STATE_HELD);
+    };
+    v1::MachineStatus status = AwaitStatus(is_told);
+    for (int tries = 0; status.state() == v1::MACHINE_STATE_HELD && tries < 20; ++tries) {
+      v1::HostOrder resume;
+      resume.mutable_resume()->set_control_token(token_);
+      resume.mutable_resume()->set_request_id("resume " + std::to_string(number_));
+      AskUntilItActs(resume);
+      status = AwaitStatus(is_told, Count(v1::HostRequest::kStatus));
+    }
+    EXPECT_EQ(status.state(), v1::MACHINE_STATE_RUNNING);
+  }
   // Keys wait for less than the disk is waited for.
   void LiveUntilKeysAreLate() {
     patience_.keys = HostPatience{}.keys;
@@ -111,22 +129,24 @@ TEST_F(LiveHostDisk, NothingBeginsWhileTheDiskIsStuck) {
   EXPECT_EQ(troubled.refusal().code(), CodeText(ErrorCode::kCellJournal));
   EXPECT_THAT(troubled.refusal().message(), HasSubstr("machine.journal"));
   EXPECT_EQ(status.state(), v1::MACHINE_STATE_IDLE);
-  AskUntilItActs(StartOf());
-  AwaitStatus([](const v1::MachineStatus& one) {
-    return one.state() == v1::MACHINE_STATE_RUNNING && !IsLate(one);
-  });
+  RunOnADiskThatAnswers();
 }
 
 // LIVE-3.21: what moves is held, and the log says why once it can.
 TEST_F(LiveHostDisk, ARunIsHeldWhileTheDiskIsStuck) {
   LiveWithLittlePatience();
   TakeControl();
-  AskUntilItActs(StartOf());
-  AwaitState(v1::MACHINE_STATE_RUNNING);
+  RunOnADiskThatAnswers();
+  const std::size_t before = Count(v1::HostRequest::kStatus);
   auto disk = std::make_optional<SmallFiles>(0);
-  const v1::MachineStatus held = AwaitStatus([](const v1::MachineStatus& one) {
-    return one.state() == v1::MACHINE_STATE_HELD && IsLate(one);
-  });
+  const auto is_held = [](const v1::MachineStatus& one) {
+    return one.state() == v1::MACHINE_STATE_HELD;
+  };
+  // On a slow computer it may have been held for a write before, which is over, and what stands
+  // writes nothing by itself.
+  if (!IsLate(AwaitStatus(is_held, before))) Send(OverrideOf(90.0));
+  const v1::MachineStatus held = AwaitStatus(
+      [&](const v1::MachineStatus& one) { return is_held(one) && IsLate(one); }, before);
   disk.reset();
   EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_LATE);
   const v1::JournalEntry why =

@@ -75,7 +75,7 @@ TEST_F(LiveHostLines, ItEndsWhenAllItsServersAreOfAnotherVersion) {
   v1::HostWelcome welcome = WelcomeTo("rml1");
   welcome.add_servers("unix:" + folder_ + "/nobody");
   Live(welcome);
-  server_->refusal = {grpc::StatusCode::FAILED_PRECONDITION, "of another version"};
+  server_->Refuse({grpc::StatusCode::FAILED_PRECONDITION, "of another version"});
   server_->EndLine();
   EXPECT_EQ(host_.get(), 0);
   EXPECT_EQ(Count(v1::HostRequest::kHello), 3U);  // the first, and one refusal for each server
@@ -88,6 +88,7 @@ TEST_F(LiveHostLines, ALineThatIsTakenUpAgainBeginsWithWhatIsNotStored) {
   const std::vector<v1::JournalEntry> before = Entries();
   ASSERT_FALSE(before.empty());
   server_->EndLine();
+  server_->AwaitEnds(1);  // a status that comes behind this is of the new line
   server_->Told(v1::HostRequest::kHello, 2);
   const std::size_t statuses = Count(v1::HostRequest::kStatus);
   AwaitStatus([](const v1::MachineStatus& one) { return one.has_control(); }, statuses);

@@ -209,17 +209,24 @@ TEST_F(LiveHostOrders, OneStartIsLookedAtAtATime) {
   server_->Tell(memory);
   preview = PreviewOf(6, 100'000);
   preview.set_for_job("jobs/17");
-  Send(preview);  // nobody waits for its end, and all that is asked comes long before
-  const std::int64_t second_asked = Send(PreviewOf(5, 8));
-  const std::int64_t about_asked = Send(WhereIs("jobs/17"));
-  const std::int64_t other_asked = Send(WhereIs("jobs/16"));
-  const v1::HostOrderAnswer second = AnswerTo(second_asked);
+  v1::HostOrderAnswer second;
+  v1::HostOrderAnswer about;
+  v1::HostOrderAnswer other;
+  // On a slow computer it may be over before all that is asked has come: then once more.
+  for (int tries = 0; tries < 20 && about.refusal().message() != "it is about to begin"; ++tries) {
+    Send(preview);  // nobody waits for its end
+    const std::int64_t second_asked = Send(PreviewOf(5, 8));
+    const std::int64_t about_asked = Send(WhereIs("jobs/17"));
+    const std::int64_t other_asked = Send(WhereIs("jobs/16"));
+    second = AnswerTo(second_asked);
+    about = AnswerTo(about_asked);
+    other = AnswerTo(other_asked);
+  }
   EXPECT_EQ(second.refusal().code(), CodeText(ErrorCode::kCellUnavailable));
   EXPECT_EQ(second.refusal().message(), "another start is looked at");
-  const v1::HostOrderAnswer about = AnswerTo(about_asked);
   EXPECT_EQ(about.refusal().code(), CodeText(ErrorCode::kCellNotLive));
   EXPECT_EQ(about.refusal().message(), "it is about to begin");
-  EXPECT_EQ(AnswerTo(other_asked).refusal().code(), CodeText(ErrorCode::kCellNotFound));
+  EXPECT_EQ(other.refusal().code(), CodeText(ErrorCode::kCellNotFound));
 }
 
 // LIVE-3.22: what is not stored stays in the journal, by the fence under which it was told.

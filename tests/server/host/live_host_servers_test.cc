@@ -77,8 +77,8 @@ class LiveHostServers : public LiveHost {
   }
   // The other one does not take its place: it keeps the line that it has.
   void LoseTheOneThatStores() {
-    server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
-    other_->refusal = server_->refusal;
+    for (FakeHostServer* server : {server_.get(), other_.get()})
+      server->Refuse({grpc::StatusCode::UNAVAILABLE, "away"});
     server_->EndLine();
   }
   std::unique_ptr<FakeHostServer> other_;
@@ -197,10 +197,10 @@ TEST_F(LiveHostServers, ARunThatNobodySeesIsHeld) {
   TakeControl();
   ASSERT_FALSE(Ask(StartOf()).has_refusal());
   AwaitState(v1::MACHINE_STATE_RUNNING);
-  server_->refusal = {grpc::StatusCode::UNAVAILABLE, "away"};
+  server_->Refuse({grpc::StatusCode::UNAVAILABLE, "away"});
   server_->EndLine();
   server_->Told(v1::HostRequest::kHello, 8);  // 200 ms apart at least
-  server_->refusal = grpc::Status::OK;
+  server_->Refuse(grpc::Status::OK);
   const v1::MachineStatus held = AwaitState(v1::MACHINE_STATE_HELD);
   EXPECT_EQ(held.hold_reason(), v1::HOLD_REASON_SERVER_LOST);
   const v1::JournalEntry why =

@@ -76,7 +76,7 @@ TEST_F(ServerLinesTest, ARefusalHasItsCode) {
         {grpc::StatusCode::NOT_FOUND, ErrorCode::kCellUnknownMachine},
         {grpc::StatusCode::FAILED_PRECONDITION, ErrorCode::kCellVersionMismatch},
         {grpc::StatusCode::INTERNAL, ErrorCode::kCellUnavailable}}) {
-    server.refusal = {status, "not you"};
+    server.Refuse({status, "not you"});
     const auto joined = Join(server);
     ASSERT_FALSE(joined);
     EXPECT_EQ(joined.error().code, code);

@@ -112,8 +112,9 @@ class HookedStore final : public ForwardingStore {
   std::atomic<int> ends_kept = 0;
   std::atomic<int> standing = 0;    // requests that were not answered
   std::atomic<int> next_given = 0;  // jobs that came with the end of another one
-  // Calls that have returned.
+  // Answers that came, counted before the dispatcher hears of them: Settle() is behind that.
   std::atomic<int> renewals = 0;
+  // Calls that have returned.
   std::atomic<int> sweeps = 0;
   std::atomic<int> jobs_read = 0;
   std::atomic<int> hints = 0;  // told to the dispatcher and to the feed
@@ -153,13 +154,12 @@ class HookedStore final : public ForwardingStore {
   void SendRenew(const storage::Lease& lease, std::chrono::milliseconds duration,
                  storage::Done<storage::JobRecord> done) override {
     if (Fails(renewals_that_fail)) {
-      done(FullDisk());
       ++renewals;
-      return;
+      return done(FullDisk());
     }
     store_.SendRenew(lease, duration, [this, done](Result<storage::JobRecord> job) {
-      done(std::move(job));
       ++renewals;
+      done(std::move(job));
     });
   }
   void Append(const storage::Lease& lease, std::vector<storage::NewEvent> events,
@@ -212,10 +212,11 @@ class HookedStore final : public ForwardingStore {
   std::mutex kept_mutex_;
   std::vector<std::function<void()>> kept_;  // guarded by kept_mutex_
 
+  // In one step: a test may say at any moment that no more are to fail.
   static bool Fails(std::atomic<int>& left) {
-    if (left == 0) return false;
-    --left;
-    return true;
+    int was = left;
+    while (was > 0 && !left.compare_exchange_weak(was, was - 1)) continue;
+    return was > 0;
   }
   static Error FullDisk() { return {ErrorCode::kCellStoreFailed, "the disk is full", {}}; }
 };
@@ -239,6 +240,8 @@ class DispatcherBed {
   }
   // Moves the clock of the store and that of the dispatcher.
   void Advance(std::chrono::milliseconds by);
+  // That of the dispatcher alone: in the store no lease runs out, however soon it looks for that.
+  void AdvanceDispatcher(std::chrono::milliseconds by) { steady_.Advance(by); }
   // Waits until what was posted for workers is worked through.
   void Settle();
   // Keeps every thread of the executor busy until the handle is destroyed.

@@ -253,9 +253,13 @@ TEST(DispatcherControl, AJobThatItsWorkerHasFinishedTakesNoOrders) {
   bed.hooks.finishes_that_fail = 1'000'000;
   worker.Finish();
   bed.Settle();
-  EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
-  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
-            ErrorCode::kCellPrecondition);
+  {
+    // The end is not tried again meanwhile: for a moment it would look for a further job, too.
+    const auto busy = bed.Occupy();
+    EXPECT_FALSE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+    EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD})),
+              ErrorCode::kCellPrecondition);
+  }
   bed.hooks.finishes_that_fail = 0;
   EXPECT_EQ(worker.Released(), true);
 }

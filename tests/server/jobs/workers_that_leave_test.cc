@@ -146,16 +146,21 @@ TEST_F(WorkersThatLeave, WhatCannotBeStoredIsLeftOut) {
   worker.Leave();
 }
 
-// A line that keeps why it was closed.
+// A line that keeps why it was closed. Before its worker leaves it may be given its job once more:
+// the first lease counts.
 class ClosedLine final : public WorkerLine {
  public:
   void Send(v1::WorkResponse message) override {
-    if (message.has_assignment()) taken.set_value(message.assignment().lease());
+    if (message.has_assignment() && !given_.exchange(true))
+      taken.set_value(message.assignment().lease());
   }
   void SendProgram(int, std::shared_ptr<const std::string>) override {}
   void Close(const Error& why) override { closed.set_value(why.code); }
   std::promise<v1::WorkerLease> taken;
   std::promise<ErrorCode> closed;
+
+ private:
+  std::atomic<bool> given_ = false;
 };
 
 // A worker whose work throws is sent away with a mistake of ours, and none of its own.

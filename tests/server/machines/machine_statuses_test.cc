@@ -3,7 +3,12 @@
 #include "server/machines/machine_statuses.h"
 
 #include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "server/records/job_messages.h"
 #include "tests/server/forwarding_store.h"
@@ -22,6 +27,40 @@ class UncountedStore final : public ForwardingStore {
     if (fails) return Error{ErrorCode::kCellStoreFailed, "the line broke", {}};
     return store_.UnfinishedJobs();
   }
+};
+
+// Which counts what changes a moment later, and says so when it is told to.
+class LateCount final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+
+  void Hold() {
+    auto jobs = Must(store_.UnfinishedJobs());
+    const std::lock_guard lock(mutex_);
+    held_ = std::move(jobs);
+  }
+  void LetGo() {
+    {
+      const std::lock_guard lock(mutex_);
+      held_.reset();
+    }
+    changed_();
+  }
+
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
+    const std::lock_guard lock(mutex_);
+    if (held_) return *held_;
+    return store_.UnfinishedJobs();
+  }
+  std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
+    changed_ = std::move(changed);
+    return std::make_unique<Subscription>();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<std::vector<storage::MachineJobs>> held_;
+  std::function<void()> changed_;
 };
 
 class StatusesOfMachines : public HostsTest {
@@ -79,6 +118,21 @@ TEST_F(StatusesOfMachines, AJobIsSeenAtItsMachine) {
   Must(bed.store().Finish(leased.front().lease,
                           {.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}}));
   EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_IDLE));
+}
+
+// Who reads a job in the store before it is counted looks again when it is.
+TEST_F(StatusesOfMachines, AJobThatIsCountedLateIsSeen) {
+  LateCount store(bed.store());
+  const MachineStatuses statuses(store, feed, *executor);
+  ASSERT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_IDLE));
+  store.Hold();
+  bed.SubmitCheck();
+  bed.Lease();
+  ASSERT_TRUE(Eventually([&] { return feed.position() == Must(bed.store().LastPosition()); }));
+  Settle();
+  EXPECT_EQ(StateOf("optimo-1"), v1::MACHINE_STATE_IDLE);
+  store.LetGo();
+  EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_RUNNING));
 }
 
 // Whatever comes next brings a whole look, be it a step of a job, which changes no machine.

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <future>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/base/config.h"
@@ -43,11 +45,9 @@ class ComparedJobs : public testing::Test {
     job.set_machine("machines/optimo-1");
     job.mutable_inline_program()->set_file_name("part.S");
     job.mutable_inline_program()->set_content("STOP\n");
-    std::string name;
-    book.Submit(request, "anna", [&name](const Result<v1::Job>& made) {
-      if (made) name = made->name();
-    });
-    EXPECT_TRUE(Eventually([&name] { return !name.empty(); }));
+    std::promise<Result<v1::Job>> answer;
+    book.Submit(request, "anna", [&](Result<v1::Job> made) { answer.set_value(std::move(made)); });
+    const std::string name = Must(answer.get_future().get()).name();
     Must(bed.store().Finish(
         bed.Lease("SIMULATE"),
         {.artifacts = {{"report", "application/x-protobuf", report.SerializeAsString(), {}}}}));

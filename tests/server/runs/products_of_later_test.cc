@@ -63,6 +63,7 @@ class ProductsOfLater : public testing::Test {
   ~ProductsOfLater() override {
     products_.reset();
     hosts_.CloseAll();
+    executor_.reset();  // what was posted is done
   }
   // A run that is over; of one that never began there is no recording.
   std::int64_t Over(bool began = true, JobState how = JobState::kSucceeded) {
@@ -144,10 +145,10 @@ class ProductsOfLater : public testing::Test {
   ServerBed bed_;
   NotingStore store_{bed_.store()};
   EventFeed feed_{bed_.store()};
-  Executor executor_{2};
+  std::unique_ptr<Executor> executor_ = std::make_unique<Executor>(2);
   Hosts hosts_{{.store = bed_.store(),
                 .feed = feed_,
-                .executor = executor_,
+                .executor = *executor_,
                 .server = "this server",
                 .join_token = "secret"}};
   storage::TestDirectory folder_;
@@ -164,6 +165,21 @@ TEST_F(ProductsOfLater, ARunWhoseHostIsNotHeardOfIsLookedAtAgain) {
   Record(job);
   LookAtMill();
   EXPECT_TRUE(HasReport(job));
+}
+
+// A host that is silent for a moment keeps its line: nobody says when it answers again.
+TEST_F(ProductsOfLater, ARunWhoseHostIsSilentIsLookedAtAgain) {
+  again_after_ = std::chrono::milliseconds(1);
+  const std::int64_t job = Over();
+  const auto link = Joined();
+  v1::HostRequest silent;
+  silent.mutable_status()->set_machine("machines/mill-1");
+  silent.mutable_status()->set_state(v1::MACHINE_STATE_LOST);
+  hosts_.Receive(*link, std::move(silent));
+  LookAtMill();
+  EXPECT_FALSE(HasReport(job));
+  Record(job);
+  EXPECT_TRUE(Eventually([&] { return HasReport(job); }));
 }
 
 // Nor where there is no room to play it, or to keep what was made.

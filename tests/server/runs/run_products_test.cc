@@ -168,6 +168,8 @@ TEST_F(RunProductsTest, OneThatTakesTooLongIsGivenUp) {
   const std::int64_t job = Run("long");
   {
     const auto products = Start(std::chrono::seconds(1));
+    // Else it would be over before it is looked at.
+    std::filesystem::create_directories(folder_.File("runs") + "/" + std::to_string(job));
     products->Look("mill-1");
     ASSERT_TRUE(Eventually([&] { return IsOver(job); }));
   }

@@ -12,12 +12,15 @@ class HandboxWatches : public LiveMachines {
     told.mutable_panel()->set_display(display);
     hosts.Receive(*host, std::move(told));
   }
-  // Until watchers see it.
+  // Until watchers see it, and not what was on its way before it.
   void Publish(const std::string& panel) {
     const std::string name = Hosts::HandboxOf("optimo-1");
     const std::uint64_t before = feed().version();
     feed().Publish(name, panel);
-    EXPECT_TRUE(Eventually([&] { return feed().LatestAfter(name, before).has_value(); }));
+    EXPECT_TRUE(Eventually([&] {
+      const auto told = feed().LatestAfter(name, before);
+      return told && *told->bytes == panel;
+    }));
   }
   static std::string Panel(const std::string& display) {
     v1::HandboxPanel panel;

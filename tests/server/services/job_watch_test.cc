@@ -13,6 +13,12 @@ namespace {
 
 using testing::ElementsAre;
 
+// What the feed has read and not told yet it puts into the memory for those who begin to watch
+// meanwhile: a part of what there is, or what is gone by now.
+bool HasReadTheLog(StreamBed& room) {
+  return Eventually([&] { return room.feed.position() == Must(room.bed.store().LastPosition()); });
+}
+
 class JobWatchTest : public testing::Test {
  protected:
   // What is told, in a word: "snapshot", "2 text", "3 ended", "at 7 steps", "come back".
@@ -171,6 +177,7 @@ TEST(JobWatchOfAShortLog, EventsThatAreGoneAreSaidToBeGone) {
   const std::int64_t job = room.Submit();
   room.Say(room.bed.Lease(), std::vector<std::string>(50, "x"));
   ASSERT_TRUE(Eventually([&] { return Must(room.bed.store().GetJob(job)).events_gone_until > 1; }));
+  ASSERT_TRUE(HasReadTheLog(room));
   auto watch = room.Watch(job, 1);
   EXPECT_TRUE(watch.Next().has_snapshot());
   watch.ExpectRefused(grpc::StatusCode::OUT_OF_RANGE, "CELL-E9021");
@@ -215,12 +222,12 @@ TEST_F(JobWatchTest, OfAJobThatIsDeletedItTellsWhatItHas) {
   const storage::Lease lease = room.bed.Lease();
   room.Say(lease, std::vector<std::string>(100, std::string(10'000, 'x')));
   room.Finish(lease);
+  ASSERT_TRUE(HasReadTheLog(room));
   auto watch = room.Watch(job);
   EXPECT_EQ(NextOf(watch), "snapshot");
   EXPECT_EQ(NextOf(watch), "1 state");
   ASSERT_TRUE(room.bed.store().DeleteJob(job, "anna"));
-  ASSERT_TRUE(
-      Eventually([&] { return room.feed.position() == Must(room.bed.store().LastPosition()); }));
+  ASSERT_TRUE(HasReadTheLog(room));
   EXPECT_EQ(watch.Rest().size(), 63U);
   watch.ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E");
 }

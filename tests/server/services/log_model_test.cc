@@ -12,6 +12,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "rmlcell/v1/cell.pb.h"
@@ -60,6 +61,14 @@ class LogModel {
 
   storage::Store& store() { return bed_.store(); }
   std::int64_t last() { return Must(store().LastPosition()); }
+  // All that is kept. The oldest events are removed when their writer has its answer, perhaps
+  // between these two looks.
+  std::vector<storage::EventRecord> Log() {
+    for (;;) {
+      auto log = store().AllEvents(Must(store().EventsGoneUntil()), 1'000'000);
+      if (CodeOf(log) != ErrorCode::kCellEventsGone) return Must(std::move(log));
+    }
+  }
 
   Wish RandomWish(Random& random) {
     Wish wish;
@@ -213,7 +222,7 @@ void RunModel(LogModel& model, unsigned seed, int watches, int rounds) {
     Random random(seed);
     model.Write(3, 1, random);
   }
-  const auto log = Must(model.store().AllEvents(Must(model.store().EventsGoneUntil()), 1'000'000));
+  const std::vector<storage::EventRecord> log = model.Log();
   for (const auto& watch : all) {
     std::vector<std::int64_t> plain;
     for (const storage::EventRecord& event : log) {

@@ -13,6 +13,7 @@
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "server/base/config.h"
 #include "server/base/executor.h"
+#include "server/base/steady_clock.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/running_heights.h"
@@ -85,7 +86,8 @@ class StreamBed {
   static constexpr const char* kCaller = "local";  // of every watch
 
   explicit StreamBed(storage::SqliteOptions options = {},
-                     std::chrono::milliseconds bookmark_interval = std::chrono::hours(1))
+                     std::chrono::milliseconds bookmark_interval = std::chrono::hours(1),
+                     SteadyClock clock = SteadyTime)
       : bed(std::move(options)),
         service_({.executor = executor_,
                   .open = open,
@@ -110,6 +112,7 @@ class StreamBed {
                .facts = facts_,
                .registry = registry,
                .instance_id = kInstance,
+               .clock = std::move(clock),
                .bookmark_interval = bookmark_interval},
               CallNeeds{gate, executor_, executor_, 1 << 20}),
         machines_({executor_, open, store, feed, kInstance}) {

@@ -157,6 +157,7 @@ class Exchanges : public ::testing::Test {
     grpc::ServerBuilder builder;
     builder.RegisterCallbackGenericService(&calls_);
     server_ = builder.BuildAndStart();
+    gateway_.options.health_timeout = std::chrono::hours(1);
     gateway_.channel = server_->InProcessChannel({});
     gateway_.resources = &source_;
     gateway_.run_blocking = [this](std::function<void()> task) {

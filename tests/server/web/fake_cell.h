@@ -64,6 +64,7 @@ inline WebOptions AnyPort() {
   WebOptions options;
   options.port = 0;
   options.linger_timeout = std::chrono::minutes(1);
+  options.health_timeout = std::chrono::minutes(1);
   return options;
 }
 

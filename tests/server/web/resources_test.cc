@@ -15,8 +15,7 @@ constexpr std::string_view kPicture = "/v1/jobs/17/artifacts/picture.svg";
 constexpr std::string_view kContent = "/v1/machines/optimo-1/programs/45/content";
 
 WebOptions SmallUploads() {
-  WebOptions options;
-  options.port = 0;
+  WebOptions options = AnyPort();
   options.upload_bytes_max = 1'000'000;
   return options;
 }

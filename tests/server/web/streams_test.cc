@@ -40,12 +40,13 @@ class Streams : public ::testing::Test {
   FakeCell cell_{Quick()};
 };
 
-// The head comes at once, the first message with it, and quiet streams get comment lines.
+// The head comes at once, the first message behind it, and quiet streams get comment lines; on a
+// slow machine also before that message.
 TEST_F(Streams, QuietStreamsAreKeptAlive) {
   RawClient client(cell_.port());
   client.Send(Watch("idle"));
   EXPECT_EQ(client.ReadHead().status, 200);
-  EXPECT_NE(client.ReadUntil("\n\n\r\n").find("\"snapshot\""), std::string::npos);
+  EXPECT_TRUE(client.ReadUntil("\"snapshot\"").ends_with("\"snapshot\""));
   for (int i = 0; i < 3; ++i)
     EXPECT_NE(client.ReadUntil(": quiet\n\n").find(": quiet"), std::string::npos);
 }
@@ -159,7 +160,8 @@ TEST_F(Streams, StopTellsClientsToComeBack) {
   EXPECT_NE(connect.ReadUntil("0\r\n\r\n").find("{\"error\":{\"code\":\"unavailable\""),
             std::string::npos);
   cell_.web().Stop(std::chrono::minutes(1));  // nothing is left that it would have to cut off
-  EXPECT_EQ(cell_.counters().open, 0);
+  // Its client may have heard of the end of a call before its server has.
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().open == 0; }));
   EXPECT_EQ(cell_.counters().cancelled, 0);
   for (const WebLogEntry& entry : cell_.log()) EXPECT_TRUE(entry.finished) << entry.path;
 }
@@ -194,9 +196,12 @@ TEST_F(Streams, NothingLeaks) {
       if (i % 5 == 0) clients[i]->Reset();
     }
   }
+  // Whoever is served now stood behind all of them: none is still to be taken.
+  EXPECT_EQ(Exchange(cell_.port(), Get("/favicon.svg")).status, 200);
+  // A call that was left may come to its server behind all that, and ends there.
+  EXPECT_TRUE(FakeCell::Eventually(
+      [&] { return cell_.counters().open == 0 && OpenDescriptors() <= before + 2; }));
   EXPECT_TRUE(AllEnded());
-  EXPECT_EQ(cell_.counters().calls - cell_.counters().open, cell_.counters().calls);
-  EXPECT_LE(OpenDescriptors(), before + 2);
 }
 
 // Many streams on one thread, each with its own events in order.
@@ -237,7 +242,7 @@ TEST(SlowReader, SlowsItsProducerOnly) {
         Exchange(cell.port(), Post(kGetJob, "application/json", R"({"name":"jobs/1"})")).status,
         200);
   }
-  EXPECT_GT(cell.counters().produced, 0);
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell.counters().produced > 0; }));
   EXPECT_LE(cell.counters().produced, kHeld);
   for (int read = 1; read <= 60; ++read) {
     ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);

@@ -14,18 +14,7 @@ namespace {
 
 using testing::IsEmpty;
 
-class EndsOfJobs : public JobRunnerTest {
- protected:
-  // The program comes behind what is said before, which is read so before anything of it is done.
-  bool WorkBehind(v1::WorkerAssignment assignment, std::vector<v1::WorkResponse> before) {
-    v1::AssignedProgram& program = *assignment.mutable_programs(0);
-    v1::WorkResponse& rest = before.emplace_back();
-    rest.mutable_blob()->set_slot(program.slot());
-    rest.mutable_blob()->set_chunk(program.content());
-    program.clear_content();
-    return Work(assignment, before);
-  }
-};
+class EndsOfJobs : public JobRunnerTest {};
 
 // A worker that is to end does what is done as soon as it would be handed back.
 TEST_F(EndsOfJobs, ACheckIsNotHandedBack) {

@@ -24,9 +24,7 @@ constexpr std::size_t kFrameHead = 4;  // conventions: a frame is its length and
 
 class JobOutputBounds : public JobRunnerTest {
  protected:
-  void Join() {
-    line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
-  }
+  void Join() { line_ = Joined(); }
   // What was sent until now.
   void Hear() {
     line_->Close();
@@ -242,7 +240,7 @@ TEST_F(JobOutputBounds, ARunWithoutPaceTellsWhereItIs) {
 }
 
 // One that is told to go as the machine would tells what part of it is done when it is known how
-// long it takes.
+// long it takes. It lasts for minutes: the cancel comes before its end, however late that is.
 TEST_F(JobOutputBounds, ARunWithThePaceOfItsMachineTellsWhatIsKnown) {
   std::vector<v1::JobProgress> positions;
   server.heard = [&](const v1::WorkRequest& message) {
@@ -250,8 +248,9 @@ TEST_F(JobOutputBounds, ARunWithThePaceOfItsMachineTellsWhatIsKnown) {
     positions.push_back(message.heartbeat().progress());
     if (positions.size() == 3) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
   };
-  v1::WorkerAssignment assignment =
-      Assignment(v1::JOB_KIND_SIMULATE, "PA;PA;VS8;!MC1;PU100,0;PU0,0;", "rml1");
+  std::string source = "PA;PA;VS8;!MC1;";
+  for (int i = 0; i < 1'000; ++i) source += "PU1000,0;PU0,0;";
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
   assignment.mutable_job()->mutable_simulation()->set_pace(1.0);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);

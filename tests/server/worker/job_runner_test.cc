@@ -44,7 +44,7 @@ TEST_F(JobRunnerTest, ItsHeartBeatsAtOnce) {
 // Nobody holds the lease of a job that is over: its heart rests.
 TEST_F(JobRunnerTest, NoHeartBeatsBehindAJob) {
   server.lease_ms = 3;
-  line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+  line_ = Joined();
   JobRunner runner(*line_, stopping, processor_time);
   EXPECT_TRUE(runner.Work(Assignment(v1::JOB_KIND_CHECK, "STOP\n")));
   v1::WorkRequest behind;
@@ -61,8 +61,7 @@ TEST_F(JobRunnerTest, NoHeartBeatsBehindAJob) {
 }
 
 TEST_F(JobRunnerTest, SaysOfWhichPoolItIs) {
-  line_ = *ServerLine::Join(
-      {.server = server.address(), .join_token = "secret", .name = "w", .pool = "paced"});
+  line_ = Joined("paced");
   EXPECT_EQ(server.requests().front().hello().pool(), "paced");
 }
 
@@ -239,7 +238,7 @@ TEST_F(JobRunnerTest, TheToolpathIsSentAsItIsMade) {
 }
 
 // How long a paced program takes is worked out beside its run, a little at a time, and told once it
-// is known: of 50,000 moves not at first. The run itself would last some 13 s.
+// is known: of 50,000 moves not at first. The run itself would last some four minutes.
 TEST_F(JobRunnerTest, TheTimeOfALongProgramIsToldWhenItIsKnown) {
   std::int64_t planned_ns = 0;
   server.heard = [&](const v1::WorkRequest& message) {
@@ -251,7 +250,7 @@ TEST_F(JobRunnerTest, TheTimeOfALongProgramIsToldWhenItIsKnown) {
   for (int i = 0; i < 50'000; ++i)
     source += "Z" + std::to_string(i % 2 * 1000) + "," + std::to_string(i % 7 * 100) + ",-50;";
   v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, source, "rml1");
-  assignment.mutable_job()->mutable_simulation()->set_pace(20'000.0);
+  assignment.mutable_job()->mutable_simulation()->set_pace(1'000.0);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
   // Each is 10 mm or a little more long, at 2 mm/s and more slowly at its ends.

@@ -11,7 +11,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rmlcell/v1/report.pb.h"
@@ -170,10 +172,19 @@ class JobRunnerTest : public testing::Test {
     return message.has_heartbeat() && message.heartbeat().has_progress();
   }
 
+  // A line to the server, which is there: on a busy computer it may answer too late at first.
+  std::unique_ptr<ServerLine> Joined(const std::string& pool = {}) const {
+    for (int asked = 0; asked < 10; ++asked) {
+      auto joined = ServerLine::Join(
+          {.server = server.address(), .join_token = "secret", .name = "w", .pool = pool});
+      if (joined) return *std::move(joined);
+    }
+    throw std::runtime_error("the server does not answer");
+  }
   // Works on it; all that the worker says has been heard when this returns.
   bool Work(const v1::WorkerAssignment& assignment,
             const std::vector<v1::WorkResponse>& before = {}) {
-    line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+    line_ = Joined();
     for (const v1::WorkResponse& message : before) server.Send(message);
     JobRunner runner(*line_, stopping, processor_time);
     const bool go_on = runner.Work(assignment);
@@ -181,6 +192,16 @@ class JobRunnerTest : public testing::Test {
     while (!line_->gone()) line_->Receive(std::chrono::seconds(60));
     heard_ = server.requests();
     return go_on;
+  }
+  // The same. The program comes behind what is said before, which is read so before anything of it
+  // is done.
+  bool WorkBehind(v1::WorkerAssignment assignment, std::vector<v1::WorkResponse> before) {
+    v1::AssignedProgram& program = *assignment.mutable_programs(0);
+    v1::WorkResponse& rest = before.emplace_back();
+    rest.mutable_blob()->set_slot(program.slot());
+    rest.mutable_blob()->set_chunk(program.content());
+    program.clear_content();
+    return Work(assignment, before);
   }
   // The end that the worker told; there is one at most, and nothing follows it.
   std::optional<v1::WorkerFinish> Finished() {
