@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <set>
+#include <utility>
 
 #include "proto/bridge/findings.h"
 #include "server/machines/host_words.h"
@@ -37,11 +38,10 @@ void Hosts::LookAtMemory(bool at_once) {
     const std::lock_guard lock(mutex_);
     if (hosts_.empty()) {  // who joins is sent all of it
       looked_until_ = needs_.feed.position();
-      unsent_.clear();
       return;
     }
   }
-  std::set<std::string> changed = unsent_;
+  std::set<std::string> changed = std::exchange(unsent_, {});  // whose still fails comes again
   for (;;) {
     const auto events = at_once ? needs_.store.AllEvents(looked_until_, kMemoryReadAhead)
                                 : needs_.feed.EventsAfter(looked_until_, kMemoryReadAhead);
