@@ -11,11 +11,16 @@ namespace rmlcell::server {
 
 using Instant = std::chrono::steady_clock::time_point;
 
+inline constexpr const char* kHaltsUnseen = "its host is silent: whether it halts is not known";
+
 // What Hosts knows of one host, by one line of it. Only its own sources include this.
 struct Hosts::Host {
   std::string id{};
   std::shared_ptr<HostLink> link;
   storage::MachineLease lease{};  // does not change but for its count, which nobody looks at
+
+  // What halts and what begins go out one behind the other. Taken before `mutex`.
+  std::mutex in_order;
 
   std::mutex mutex;               // a leaf, like that of Hosts
   std::condition_variable rests;  // nothing of it is being stored
@@ -25,6 +30,7 @@ struct Hosts::Host {
     Answered done;
     std::chrono::steady_clock::time_point until{};  // it is answered by then, or never
     bool halts = false;
+    bool begins = false;  // and has not gone out: what halts the machine takes it back
   };
   std::map<std::int64_t, Pending> pending;
   // What halts, and came when it was gone: for the line that comes behind it. LIVE-2.10

@@ -31,23 +31,12 @@ constexpr std::chrono::milliseconds kLostElsewhere{3'000};
 constexpr std::chrono::milliseconds kLostAtRest{2'500};
 constexpr std::chrono::seconds kBetweenLooks{5};  // at who holds a machine that is off
 constexpr std::size_t kWaitingEntriesMax = 100'000;
-constexpr std::size_t kKeptMax = 16;  // of what halts a machine whose line is gone
-constexpr const char* kHaltsUnseen = "its host is silent: whether it halts is not known";
-
-bool Halts(const v1::HostOrder& order) {
-  return order.has_stop() || order.has_hold() || order.has_emergency_stop() || order.has_abort();
-}
 
 // Nothing moves as far as anybody knows. LIVE-2.04, LIVE-2.14
 void SetLost(v1::MachineStatus& status) {
   status.set_state(v1::MACHINE_STATE_LOST);
   status.clear_speed_mm_s();
   *status.mutable_words() = bridge::StandardWordsOf(status);
-}
-
-bool RunsPrograms(const v1::HostOrder& order) {
-  return order.has_start() || order.has_zero() || order.has_preview_start() ||
-         order.has_start_at_step() || order.has_run_job() || order.has_continue_job();
 }
 
 }  // namespace
@@ -189,32 +178,6 @@ void Hosts::Publish(const Host& host, v1::MachineStatus status) {
     needs_.feed.Publish(status.run().job(), ProgressOf(status).SerializeAsString());
 }
 
-void Hosts::TakeAnswer(const HostPointer& host, v1::HostOrderAnswer answer) {
-  Answered done;
-  {
-    const std::lock_guard lock(host->mutex);
-    const auto found = host->pending.find(answer.number());
-    if (found == host->pending.end()) return;
-    done = std::move(found->second.done);
-    host->pending.erase(found);
-  }
-  done(std::move(answer));
-}
-
-void Hosts::DropLate(const HostPointer& host) {
-  std::vector<Answered> late;
-  {
-    const std::lock_guard lock(host->mutex);
-    const Instant now = needs_.clock();
-    std::erase_if(host->pending, [&](auto& row) {
-      if (now < row.second.until) return false;
-      late.push_back(std::move(row.second.done));
-      return true;
-    });
-  }
-  for (const Answered& done : late) done(NotLive("its host does not answer"));
-}
-
 void Hosts::TakeEntries(const HostPointer& host, const v1::HostEntries& entries) {
   bool all_stored = false;
   {
@@ -335,9 +298,9 @@ void Hosts::Release(const HostPointer& host) {
   if (!released) spdlog::warn("the lease of {}: {}", host->id, bridge::ErrorText(released.error()));
 }
 
-void Hosts::Forget(const std::string& machine) {
+void Hosts::Forget(const std::string& machine, std::optional<std::int64_t> fence) {
   const HostPointer host = Find(machine);
-  if (host == nullptr) return;
+  if (host == nullptr || (fence && host->lease.fence != *fence)) return;
   Retire(host);
   Release(host);
   {
@@ -454,48 +417,6 @@ void Hosts::Leave(const HostLink& link) {
   Changed();
 }
 
-void Hosts::Ask(const std::string& machine, v1::HostOrder order, Answered done) {
-  const HostPointer host = Find(machine);
-  if (host == nullptr) return done(NotLive("the machine has no host: enable it"));
-  bool gone = false;
-  bool lost = false;
-  {
-    const std::lock_guard lock(host->mutex);
-    gone = host->gone;
-    lost = host->status && host->status->state() == v1::MACHINE_STATE_LOST;
-    order.set_number(++next_order_);
-    const auto patience = order.has_preview_start() ? kPreviewPatience : kAnswerPatience;
-    if (!gone && !lost) {
-      host->pending[order.number()] = {
-          .done = done, .until = needs_.clock() + patience, .halts = Halts(order)};
-    }
-    if (gone && !host->has_successor && Halts(order) && host->kept.size() < kKeptMax) {
-      if (host->kept.empty()) host->kept_since = needs_.clock();
-      host->kept.push_back(order);
-      return done(NotLive("not delivered: it acts if this host is heard of again"));
-    }
-  }
-  if (gone) return done(NotLive("its host is not heard of"));
-  // Nothing begins that nobody sees; what halts acts when it comes there. LIVE-2.10
-  if (lost && !Halts(order)) return done(NotLive("its host is silent"));
-  v1::HostResponse message;
-  *message.mutable_order() = std::move(order);
-  if (RunsPrograms(message.order())) {
-    auto waits = std::make_shared<v1::HostResponse>(std::move(message));
-    return needs_.executor.Post([this, host, waits] { SendBehindMemory(host, std::move(*waits)); });
-  }
-  host->link->Send(std::move(message));
-  if (lost) done(NotLive(kHaltsUnseen));
-}
-
-void Hosts::End(const std::string& machine, const std::string& why) {
-  const HostPointer host = Find(machine);
-  if (host == nullptr) return;
-  v1::HostResponse message;
-  message.mutable_stop()->set_reason(why);
-  host->link->Send(std::move(message));
-}
-
 void Hosts::CloseAll() {
   subscription_.reset();
   std::vector<std::shared_ptr<HostLink>> links;
@@ -531,6 +452,11 @@ std::vector<std::string> Hosts::Machines() const {
 }
 
 bool Hosts::IsHosted(const std::string& machine) const { return Find(machine) != nullptr; }
+
+std::optional<std::int64_t> Hosts::FenceOf(const std::string& machine) const {
+  const HostPointer host = Find(machine);
+  return host != nullptr ? std::optional(host->lease.fence) : std::nullopt;
+}
 
 bool Hosts::IsHeard(const std::string& machine) const {
   {

@@ -30,8 +30,7 @@ class HostLink {
 
 // The hosts of machines that live, as this server hears of them: it gives them their leases, hands
 // orders of clients over and stores what they tell. Orders and status never pass the store.
-// Thread-safe. Lock order: mutex_, that of a host; neither the store nor a link is called under
-// them.
+// Thread-safe. Lock order: mutex_, that of a host; the store is called under neither.
 class Hosts {
  public:
   static constexpr std::chrono::seconds kLease{60};  // PG-5.08
@@ -62,17 +61,20 @@ class Hosts {
   void Leave(const HostLink& link);
 
   // What a client asks of a machine. `done` is called once, on any thread: with the host's answer,
-  // or CellNotLive.
+  // or CellNotLive. What halts goes out at once; what would begin, and has not gone out by then, is
+  // refused with CellMachineState.
   using Answered = std::function<void(Result<v1::HostOrderAnswer>)>;
   void Ask(const std::string& machine, v1::HostOrder order, Answered done);
-  // It comes to rest, gives the machine back and ends.
-  void End(const std::string& machine, const std::string& why);
+  // It comes to rest, gives the machine back and ends. The fence of the host that was told so;
+  // nothing: it has none.
+  std::optional<std::int64_t> End(const std::string& machine, const std::string& why);
 
   // The server stops: lines end, no host joins any more; machines and their hosts go on.
   void CloseAll();
 
-  // It has no host any more, whatever that is doing: of one that is not heard of.
-  void Forget(const std::string& machine);
+  // It has no host any more, whatever that is doing: of one that is not heard of. With a fence: if
+  // it is this host.
+  void Forget(const std::string& machine, std::optional<std::int64_t> fence = {});
   // The same, and why: told until it has one again.
   void NoteOff(const std::string& machine, const std::string& why);
   void ClearOff(const std::string& machine);
@@ -85,7 +87,8 @@ class Hosts {
   void Look();
 
   bool IsHosted(const std::string& machine) const;
-  bool IsHeard(const std::string& machine) const;  // its host has a line
+  std::optional<std::int64_t> FenceOf(const std::string& machine) const;  // of its host
+  bool IsHeard(const std::string& machine) const;                         // its host has a line
   // What its host told last, with its age; LOST where it is not heard; nothing: it has no host.
   std::optional<v1::MachineStatus> StatusOf(const std::string& machine) const;
   // What is to be seen at its handbox; nothing: it has none, or is not hosted. Changes are
@@ -137,6 +140,8 @@ class Hosts {
   Status TellRecovery(const Host& host, const Taken& taken,
                       const std::optional<v1::MachineMark>& mark);
   void SendMemory(const HostPointer& host);  // with looking_ held: in the order of what was stored
+  bool Keep(Host& host, const v1::HostOrder& order) const;  // with its mutex held
+  static std::vector<Answered> Withdraw(Host& host);        // likewise
   void SendBehindMemory(const HostPointer& host, v1::HostResponse order);
   void StoreEdit(const HostPointer& host, v1::HostEdit edit);
   void TakePanel(const HostPointer& host, v1::HandboxPanel panel);

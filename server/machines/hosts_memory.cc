@@ -67,27 +67,6 @@ void Hosts::LookAtMemory(bool at_once) {
   }
 }
 
-// Whoever has stored a program, and was told so, may begin it.
-void Hosts::SendBehindMemory(const HostPointer& host, v1::HostResponse order) {
-  LookAtMemory(true);
-  bool known = false;
-  {
-    const std::lock_guard looking(looking_);
-    known = !unsent_.contains(host->id);
-  }
-  Answered refused;
-  {
-    const std::lock_guard lock(host->mutex);
-    // Who was told meanwhile that nobody answers is not to see it begin.
-    const auto asked = host->pending.find(order.order().number());
-    if (asked == host->pending.end()) return;
-    if (!known) refused = host->pending.extract(asked).mapped().done;
-  }
-  if (known) return host->link->Send(std::move(order));
-  // It would begin what was stored before. LIVE-5.03
-  refused(Error{ErrorCode::kCellStoreFailed, "what is stored there cannot be read", {}});
-}
-
 // What was taught at the machine. Its host hears of it as of anything that is stored. LIVE-7.08
 void Hosts::StoreEdit(const HostPointer& host, v1::HostEdit edit) {
   auto shared = std::make_shared<const v1::HostEdit>(std::move(edit));

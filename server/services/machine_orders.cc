@@ -426,11 +426,13 @@ Status MachineService::EndHost(const std::string& machine, const std::string& wh
     return Error{ErrorCode::kCellMachineState, "a run is open; abort it first", {}};
   live_.processes->Disable(machine);
   live_.hosts->ClearOff(machine);
-  live_.hosts->End(machine, why);
+  const auto told = live_.hosts->End(machine, why);
+  if (!told) return {};
+  // Another one may join as soon as this one is gone.
   const auto until = std::chrono::steady_clock::now() + live_.patience;
-  while (live_.hosts->IsHosted(machine) && std::chrono::steady_clock::now() < until)
+  while (live_.hosts->FenceOf(machine) == told && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(kBetweenLooks);
-  if (live_.hosts->IsHosted(machine)) live_.hosts->Forget(machine);
+  live_.hosts->Forget(machine, told);
   return {};
 }
 

@@ -183,6 +183,10 @@ TEST_F(HostsBounds, WhatBeginsARunWaitsForWhatIsStored) {
   std::promise<void> goes_on;
   const std::shared_future<void> wait = goes_on.get_future().share();
   for (int thread = 0; thread < kThreads; ++thread) executor->Post([wait] { wait.wait(); });
+  Ask(true);
+  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 1);
+  Ask(false);
+  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 2);
   std::vector<v1::HostOrder> begin(6);
   begin[0].mutable_start();
   begin[1].mutable_zero();
@@ -192,12 +196,8 @@ TEST_F(HostsBounds, WhatBeginsARunWaitsForWhatIsStored) {
   begin[5].mutable_continue_job();
   for (const v1::HostOrder& order : begin) {
     hosts.Ask("mill-1", order, [](const Result<v1::HostOrderAnswer>&) {});
-    EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 0) << order.request_case();
+    EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 2) << order.request_case();
   }
-  Ask(true);
-  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 1);
-  Ask(false);
-  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 2);
   goes_on.set_value();
   Settle();
   EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 8);

@@ -25,6 +25,24 @@ class HesitatingHost final : public HostLink {
   std::atomic<bool> closed_ = false;
 };
 
+// A host that another one follows in the moment in which it is told to go.
+class FollowedHost final : public HostLink {
+ public:
+  FollowedHost(Hosts& hosts, std::shared_ptr<HostLink> next, v1::HostHello hello)
+      : hosts_(hosts), next_(std::move(next)), hello_(std::move(hello)) {}
+  void Send(v1::HostResponse message) override {
+    if (message.has_stop()) {
+      EXPECT_TRUE(hosts_.Join(next_, hello_));
+    }
+  }
+  void Close(const Error&) override {}
+
+ private:
+  Hosts& hosts_;
+  std::shared_ptr<HostLink> next_;
+  v1::HostHello hello_;
+};
+
 class LivingWaits : public LiveMachines {
  protected:
   using LiveMachines::LiveMachines;
@@ -146,6 +164,22 @@ TEST_F(ImpatientWaits, NobodyWaitsForEver) {
   EXPECT_EQ(disabled.get(), v1::MACHINE_STATE_OFF);
   EXPECT_FALSE(hosts.IsHosted("mill-1"));
   EXPECT_TRUE(stubborn->closed());
+}
+
+// LIVE-3.03: whoever was told to go has gone; who has the machine by then keeps it.
+TEST_F(ImpatientWaits, WhoFollowsTheHostThatGoesStays) {
+  v1::HostHello hello = HelloOf("hall");
+  hello.set_machine("machines/mill-1");
+  v1::HostHello other = HelloOf("office");
+  other.set_machine("machines/mill-1");
+  const auto next = std::make_shared<HesitatingHost>();
+  ASSERT_TRUE(hosts.Join(std::make_shared<FollowedHost>(hosts, next, other), hello));
+  hosts.GiveTo("mill-1", "office", "anna", "moved");
+  Disabled("r", "machines/mill-1");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_TRUE(hosts.IsHosted("mill-1"));
+  EXPECT_FALSE(next->stopped());
+  EXPECT_FALSE(next->closed());
 }
 
 TEST_F(LivingWaits, ADisableThatIsRefusedLeavesAllAsItWas) {
