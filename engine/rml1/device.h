@@ -33,7 +33,8 @@ class DeviceListener {
   virtual void OnCounted(const Finding&) {}
   // Way in the work that the travel cut off, device units from the machine's zero.
   virtual void OnLost(const Carriage::LostLine&) {}
-  // What the device's reader made of the byte at `offset`, before the device acts on it.
+  // What the device's reader made of the byte at `offset`, before the device acts on it; not of one
+  // with which nothing is complete.
   virtual void OnReading(const Reading&, const CommandReader&, std::int64_t /*offset*/) {}
   virtual void OnAbort(std::int64_t /*offset*/) {}  // ESC.K: what has not run is forgotten
 };

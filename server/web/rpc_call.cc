@@ -17,8 +17,8 @@ namespace {
 
 std::string BytesOf(const grpc::ByteBuffer& buffer) {
   std::vector<grpc::Slice> slices;
+  static_cast<void>(buffer.Dump(&slices));  // of what cannot be read there are none
   std::string bytes;
-  if (!buffer.Dump(&slices).ok()) return bytes;
   bytes.reserve(buffer.Length());
   for (const grpc::Slice& slice : slices) {
     bytes.append(reinterpret_cast<const char*>(slice.begin()), slice.size());

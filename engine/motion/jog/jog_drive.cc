@@ -363,7 +363,6 @@ double JogDrive::ExcessOfStopAt(double t_s) const {
     const auto keep = [&](double value, double room) {
       worst = std::max({worst, value + room - high_[axis], low_[axis] - value + room});
     };
-    keep(seen.front()[axis], 0.0);
     keep(seen.back()[axis], 0.0);
     // It may turn back between two looks: what it can go in that time.
     const double room = 0.25 * machine_.axes.acceleration[axis] * step_s * step_s;

@@ -217,7 +217,6 @@ class Ride {
     bool under_way = false;  // its first motion is
     std::size_t first = 0;   // else the place of that among the items before it
     double share = 1.0;      // of the new speed: the corners behind may ask for less
-    int plans_left = 8;      // each costs as much as what is planned is long
   };
 
   void Drain();

@@ -116,14 +116,13 @@ void Ride::HoldOverManyMoves() {
     const std::size_t middle = too_few + (enough - too_few) / 2;
     (planned(middle) ? enough : too_few) = middle;
   }
-  if (enough >= ends.size()) return;  // it ends by itself as soon
-  std::optional<motion::Planner> planner = planned(enough);
-  if (!planner) return;
+  if (enough >= ends.size()) return;           // it ends by itself as soon
+  motion::Planner planner = *planned(enough);  // as it was seen to be
   const std::uint64_t target = later[ends[enough - 1] - 1].tag;
   s_.halted_behind = NoteOf(target)->place;
   GoOnward(place, *onward, std::move(kept));
-  planner->Stop();
-  while (std::optional<motion::PlannedItem> item = planner->Next()) s_.path.Plan(*std::move(item));
+  planner.Stop();
+  while (std::optional<motion::PlannedItem> item = planner.Next()) s_.path.Plan(*std::move(item));
   HoldCommandsBehind(target);
   Start();
 }

@@ -140,9 +140,9 @@ bool Ride::ReplanAlong(LongLead& lead, const motion::PlannedMotion& last,
   if (!rest) return false;
   const double speed = motion::LimitsOf(*rest->move, parameters_.limits).speed;
   const bool lower = rest->move->speed_fraction < s_.path.Appended(last.tag)->speed_fraction;
-  constexpr double kShareLeast = 0.1;
+  constexpr double kShareLeast = 0.1;  // four plans, each as dear as what is planned is long
   while (lead.share > kShareLeast && !lead.way->SlowsTo(lead.share * speed)) lead.share *= 0.5;
-  if (!lower || lead.share <= kShareLeast || lead.plans_left == 0) {
+  if (!lower || lead.share <= kShareLeast) {
     lead.way.reset();
     return false;
   }
@@ -163,7 +163,6 @@ bool Ride::ReplanAlong(LongLead& lead, const motion::PlannedMotion& last,
   onward.first.path = rest->move->path.Part(begin, rest->move->path.length());
   if (TakeOnward(onward, *rest, [&] { GoAlong(lead, std::move(motions), kept); })) return true;
   lead.share *= 0.5;
-  --lead.plans_left;
   return false;
 }
 

@@ -55,12 +55,12 @@ class DifferencePage {
     cut.Add(after.path.cut_box());
     const double panels_width =
         width_ - 2.0 * kPageMargin - kRulerLeft - kDifferenceColumn - kColumnGap;
-    const ScreenRect area{kPageMargin + kRulerLeft, kDifferenceHeader + kPageMargin, panels_width,
-                          0.0};
+    const ScreenStrip strip{kPageMargin + kRulerLeft, kDifferenceHeader + kPageMargin,
+                            panels_width};
     const machine::Box shown = BoxToShow(all, cut, shape.travel);
     zero_text_ = ZeroText(options, shape);
-    whole_ = LayOut(FramesOf(options, shape), shown, area, ZeroOf(options, shape));
-    bottom_ = area.y + whole_.height + kRulerBelow;
+    whole_ = LayOut(FramesOf(options, shape), shown, strip, ZeroOf(options, shape));
+    bottom_ = strip.y + whole_.height + kRulerBelow;
 
     machine::Box changed = difference_.removed.box();
     changed.Add(difference_.added.box());
@@ -68,7 +68,7 @@ class DifferencePage {
       closer_y_ = bottom_ + kCaption;
       std::vector<ViewFrame> frames = {FrameOf(PictureView::kXY, options.direction)};
       if (shape.five_axis) frames.push_back(FrameOf(PictureView::kXZ, options.direction));
-      closer_ = LayOut(frames, BoxToShow(changed, {}, {}), {area.x, closer_y_, panels_width, 0.0},
+      closer_ = LayOut(frames, BoxToShow(changed, {}, {}), {strip.x, closer_y_, panels_width},
                        ZeroOf(options, shape));
       bottom_ = closer_y_ + closer_.height + kRulerBelow;
     }

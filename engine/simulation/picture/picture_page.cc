@@ -57,9 +57,8 @@ class PageWriter {
     depth_ = DepthOf(frames);
     const double panels_width =
         width_ - 2.0 * kPageMargin - kRulerLeft - kPictureColumn - kColumnGap;
-    layout_ =
-        LayOut(frames, BoxToShow(sketch, shape.travel),
-               {kPageMargin + kRulerLeft, kPictureHeader + kPageMargin, panels_width, 0.0}, zero_);
+    layout_ = LayOut(frames, BoxToShow(sketch, shape.travel),
+                     {kPageMargin + kRulerLeft, kPictureHeader + kPageMargin, panels_width}, zero_);
     column_x_ = width_ - kPageMargin - kPictureColumn;
   }
 

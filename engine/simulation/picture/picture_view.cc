@@ -130,15 +130,15 @@ std::string_view ZeroText(const PictureOptions& options, const machine::MachineS
 }
 
 PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box,
-                   const ScreenRect& area, const motion::MachinePoint& zero) {
+                   const ScreenStrip& strip, const motion::MachinePoint& zero) {
   PanelLayout layout;
   std::vector<Extent> extents;
   for (const ViewFrame& frame : frames) extents.push_back(ExtentOf(box, frame));
 
   if (frames.size() == 1) {
-    const double wanted = area.width * extents[0].height() / extents[0].width();
+    const double wanted = strip.width * extents[0].height() / extents[0].width();
     const double height = std::clamp(wanted, 2.0 * kPanelMin_px, kPanelHeightMax_px);
-    layout.panels.push_back({.frame = frames[0], .rect = {area.x, area.y, area.width, height}});
+    layout.panels.push_back({.frame = frames[0], .rect = {strip.x, strip.y, strip.width, height}});
     layout.height = height;
   } else {
     // Two columns; each row and column as large as its largest axial view needs.
@@ -151,7 +151,7 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
     }
     const double largest = std::max({columns[0], columns[1], rows[0], rows[1], kSmallest_mm});
     for (double& side : columns) side = std::max(side, kThinnest * largest);
-    const auto [first, second] = Share(area.width - kGap_px, columns[0], columns[1]);
+    const auto [first, second] = Share(strip.width - kGap_px, columns[0], columns[1]);
     const double scale = std::min(first / columns[0], second / columns[1]);
     const auto height_of = [&](double row) {
       return std::clamp(std::max(row, kThinnest * largest) * scale, kPanelMin_px,
@@ -163,8 +163,8 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
       const bool right = k % 2 == 1;
       const bool below = k / 2 == 1;
       layout.panels.push_back({.frame = frames[k],
-                               .rect = {area.x + (right ? first + kGap_px : 0.0),
-                                        area.y + (below ? heights[0] + kGap_px : 0.0),
+                               .rect = {strip.x + (right ? first + kGap_px : 0.0),
+                                        strip.y + (below ? heights[0] + kGap_px : 0.0),
                                         right ? second : first, heights[below ? 1 : 0]}});
     }
     layout.height = heights[0] + (two_rows ? kGap_px + heights[1] : 0.0);

@@ -55,7 +55,14 @@ struct Panel {
   Extent visible() const;
 };
 
-// Panels for up to four views inside `area`, all axial ones at the same scale and in line with each
+// Where panels go: from its upper left corner on, as far down as they need.
+struct ScreenStrip {
+  double x = 0.0;
+  double y = 0.0;
+  double width = 0.0;
+};
+
+// Panels for up to four views in `strip`, all axial ones at the same scale and in line with each
 // other, so that a height in one is at the same height in the next. Returns the height that they
 // take. `box` must not be empty.
 struct PanelLayout {
@@ -63,7 +70,7 @@ struct PanelLayout {
   double height = 0.0;
 };
 PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box,
-                   const ScreenRect& area, const motion::MachinePoint& zero = {0.0, 0.0, 0.0});
+                   const ScreenStrip& strip, const motion::MachinePoint& zero = {0.0, 0.0, 0.0});
 
 // What rulers and heights of a picture count from: the work origin, where there is one; and what
 // the page says of that.

@@ -36,9 +36,13 @@ class FedDevice final : public DeviceListener {
     }
   }
   void OnFinding(const Finding& finding) override { findings.push_back(finding); }
+  void OnReading(const Reading& reading, const CommandReader&, std::int64_t offset) override {
+    readings.emplace_back(reading.kind, offset);
+  }
   const Device* operator->() const { return &device_; }
 
   std::vector<Finding> findings;
+  std::vector<std::pair<Reading::Kind, std::int64_t>> readings;
 
  private:
   Profile profile_;
@@ -64,6 +68,21 @@ TEST(DeviceSides, WhatHangsOnTheMode) {
   EXPECT_EQ(assumed("PA;!ZO-500;!ZM-500;"), 0U);
   EXPECT_EQ(assumed("PR;!ZO-500;!ZM-500;"), 0U);
   EXPECT_EQ(assumed("V5;!ZO;!ZM;"), 0U);
+}
+
+// A byte with which nothing is complete is no reading; one that ends a list is offered again, and
+// ends its statement.
+TEST(DeviceSides, ABytesReadingIsWhatItCompletes) {
+  using Kind = Reading::Kind;
+  EXPECT_EQ(FedDevice("!RC15;W7;").readings,
+            (std::vector<std::pair<Kind, std::int64_t>>{{Kind::kCommand, 2},
+                                                        {Kind::kParameter, 5},
+                                                        {Kind::kEnd, 5},
+                                                        {Kind::kStatementEnd, 5},
+                                                        {Kind::kCommand, 6},
+                                                        {Kind::kParameter, 8},
+                                                        {Kind::kEnd, 8},
+                                                        {Kind::kStatementEnd, 8}}));
 }
 
 // RML1-2.14, RML1-2.15: two letters that are no name of two are two of one,

@@ -43,7 +43,7 @@ TEST(PictureView, ObliqueViewKeepsZUpright) {
 // One view: the box fits and touches in one direction at least; its middle is in the middle.
 TEST(PictureView, OneViewFits) {
   const machine::Box box = BoxBetween({0, 0, 0}, {100, 50, 10});
-  const PanelLayout layout = LayOut({FrameOf(PictureView::kXY, {})}, box, {10, 20, 800, 0});
+  const PanelLayout layout = LayOut({FrameOf(PictureView::kXY, {})}, box, {10, 20, 800});
   ASSERT_EQ(layout.panels.size(), 1u);
   const Panel& panel = layout.panels[0];
   EXPECT_NEAR(panel.scale, std::min(800.0 / 100.0, panel.rect.height / 50.0), 1e-9);
@@ -56,8 +56,8 @@ TEST(PictureView, OneViewFits) {
 // Both limits of the height of a view: twice 230 px, and 900.
 TEST(PictureView, OneViewIsNeitherFlatNorEndless) {
   const auto height = [](double y) {
-    const PanelLayout layout = LayOut({FrameOf(PictureView::kXY, {})},
-                                      BoxBetween({0, 0, 0}, {100, y, 1}), {10, 20, 800, 0});
+    const PanelLayout layout =
+        LayOut({FrameOf(PictureView::kXY, {})}, BoxBetween({0, 0, 0}, {100, y, 1}), {10, 20, 800});
     EXPECT_EQ(layout.height, layout.panels[0].rect.height);
     return layout.height;
   };
@@ -80,7 +80,7 @@ TEST(PictureView, RoomIsSharedByNeed) {
     EXPECT_NEAR(rect.height, height, 1e-9);
   };
   // X takes 1000 of 1001 mm, so 706 of 936 px: 0.706 px a mm, and all rows are below 230 px.
-  const PanelLayout flat = LayOut(four, BoxBetween({0, 0, 0}, {1000, 1, 1}), {5, 7, 1000, 0});
+  const PanelLayout flat = LayOut(four, BoxBetween({0, 0, 0}, {1000, 1, 1}), {5, 7, 1000});
   ASSERT_EQ(flat.panels.size(), 4u);
   expect(flat.panels[0].rect, 5, 7, 706, 230);
   expect(flat.panels[1].rect, 5 + 770, 7, 230, 230);
@@ -91,25 +91,25 @@ TEST(PictureView, RoomIsSharedByNeed) {
   EXPECT_NEAR(flat.panels[3].scale, 0.706, 1e-12);
   // X and Y alike: 468 px each for 100 mm; 1000 mm of Z would be 4680 px, so Z decides the scale.
   const PanelLayout tall =
-      LayOut({four[2], four[3]}, BoxBetween({0, 0, 0}, {100, 100, 1000}), {0, 0, 1000, 0});
+      LayOut({four[2], four[3]}, BoxBetween({0, 0, 0}, {100, 100, 1000}), {0, 0, 1000});
   expect(tall.panels[0].rect, 0, 0, 468, 648);
   expect(tall.panels[1].rect, 532, 0, 468, 648);
   EXPECT_NEAR(tall.height, 648.0, 1e-9);
   EXPECT_NEAR(tall.panels[0].scale, 0.648, 1e-12);
   // 300 and 100 mm beside each other: 702 and 234 px, 2.34 px a mm, and so for 100 and 150 mm
   // above.
-  const PanelLayout usual = LayOut(four, BoxBetween({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+  const PanelLayout usual = LayOut(four, BoxBetween({0, 0, 0}, {300, 100, 150}), {0, 0, 1000});
   expect(usual.panels[1].rect, 766, 0, 234, 234);
   expect(usual.panels[2].rect, 0, 298, 702, 351);
   EXPECT_NEAR(usual.height, 234.0 + 64.0 + 351.0, 1e-9);
   EXPECT_NEAR(usual.panels[0].scale, 2.34, 1e-12);
   const PanelLayout three =
-      LayOut({four[0], four[1], four[2]}, BoxBetween({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+      LayOut({four[0], four[1], four[2]}, BoxBetween({0, 0, 0}, {300, 100, 150}), {0, 0, 1000});
   // No axial view on the right: 12 mm, 4 % of 300, so it has 230 px and 300 mm the other 706.
   EXPECT_NEAR(three.height, 706.0 / 300.0 * (100.0 + 150.0) + 64.0, 1e-9);
   // Views in space alone are squares.
   const PanelLayout space =
-      LayOut({four[1], four[1]}, BoxBetween({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+      LayOut({four[1], four[1]}, BoxBetween({0, 0, 0}, {300, 100, 150}), {0, 0, 1000});
   expect(space.panels[0].rect, 0, 0, 468, 468);
   expect(space.panels[1].rect, 532, 0, 468, 468);
 }
@@ -138,7 +138,7 @@ TEST(PictureView, WhatIsShown) {
 TEST(PictureView, AColumnHasRoomForEachOfItsViews) {
   const PanelLayout layout = LayOut(
       {FrameOf(PictureView::kXY, {}), FrameOf(PictureView::kXZ, {}), FrameOf(PictureView::kYZ, {})},
-      BoxBetween({0, 0, 0}, {100, 300, 50}), {0, 0, 1000, 0});
+      BoxBetween({0, 0, 0}, {100, 300, 50}), {0, 0, 1000});
   ASSERT_EQ(layout.panels.size(), 3u);
   EXPECT_NEAR(layout.panels[0].rect.width, 702.0, 1e-9);
   EXPECT_NEAR(layout.panels[1].rect.width, 234.0, 1e-9);
@@ -191,7 +191,7 @@ TEST(PictureView, ViewsAreInLine) {
   const PanelLayout layout =
       LayOut({FrameOf(PictureView::kXY, {}), FrameOf(PictureView::kDirection, {1, -1, 1}),
               FrameOf(PictureView::kXZ, {}), FrameOf(PictureView::kYZ, {})},
-             box, {0, 0, 1000, 0});
+             box, {0, 0, 1000});
   ASSERT_EQ(layout.panels.size(), 4u);
   const Panel& xy = layout.panels[0];
   const Panel& xz = layout.panels[2];
@@ -230,7 +230,7 @@ TEST(PictureView, AnyExtentCanBeDrawn) {
                       PictureView::kYZ}}) {
       std::vector<ViewFrame> frames;
       for (const PictureView view : views) frames.push_back(FrameOf(view, {1, -1, 1}));
-      for (const Panel& panel : LayOut(frames, box, {0, 0, 1000, 0}).panels) {
+      for (const Panel& panel : LayOut(frames, box, {0, 0, 1000}).panels) {
         EXPECT_TRUE(std::isfinite(panel.scale) && panel.scale > 0.0);
         EXPECT_GE(panel.rect.width, 100.0);
         EXPECT_GE(panel.rect.height, 100.0);
