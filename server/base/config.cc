@@ -306,7 +306,6 @@ Status ReadMachine(const toml::table& table, const std::string& file,
 
 Status ApplyTable(const toml::table& parsed, const std::string& name, Config& config) {
   Config changed = config;
-  bool machines_replaced = false;
   for (const auto& [section_key, section] : parsed) {
     const std::string section_name(section_key);
     if (section_name == "machine") {
@@ -314,8 +313,7 @@ Status ApplyTable(const toml::table& parsed, const std::string& name, Config& co
       if (list == nullptr || (!list->empty() && !list->is_homogeneous<toml::table>())) {
         return Wrong(PlaceText(name, section) + "write machines as [[machine]] tables");
       }
-      if (!machines_replaced) changed.machines.clear();
-      machines_replaced = true;
+      changed.machines.clear();
       for (const toml::node& node : *list) {
         if (const Status read = ReadMachine(*node.as_table(), name, changed.machines); !read)
           return read.error();

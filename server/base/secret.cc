@@ -27,15 +27,16 @@ std::string RandomText() {
 }
 
 Result<std::string> KeptSecret(const std::string& path) {
-  const auto failed = [&path](int number) {
-    return Error{ErrorCode::kCellConfiguration, path + ": " + std::strerror(number), {}};
-  };
   {
     std::ifstream file(path);
     std::string secret;
     if (file >> secret && secret.size() >= 32) return secret;
   }
   const std::string made = path + ".new";
+  const auto failed = [&path, &made](int number) {
+    ::unlink(made.c_str());
+    return Error{ErrorCode::kCellConfiguration, path + ": " + std::strerror(number), {}};
+  };
   const int file =
       ::open(made.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0) return failed(errno);

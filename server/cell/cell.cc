@@ -55,9 +55,9 @@
 namespace rmlcell::server {
 namespace {
 
-// Threads for work that may block: the store mostly, so there are more of them than cores.
 // RUN jobs whose time has come, or that another server took.
 constexpr std::chrono::seconds kRunsLookedForAfter{1};
+// Threads for work that may block: the store mostly, so there are more of them than cores.
 constexpr int kStoreThreads = 8;
 // For watches, which mostly tell what is in memory: however many there are, calls go on beside
 // them.
@@ -138,7 +138,6 @@ struct Cell::Parts {
   std::unique_ptr<WorkerProcesses> processes;
   std::optional<PrivateSocket> private_socket;
   std::vector<std::string> grpc_addresses;
-  bool stopped = false;
 
   Status OpenStore();
   Status MakeMachines();
@@ -460,8 +459,6 @@ Cell::~Cell() { Stop(); }
 
 void Cell::Stop() {
   Parts& parts = *parts_;
-  if (parts.stopped) return;
-  parts.stopped = true;
   const auto patience = std::chrono::milliseconds(
       static_cast<std::int64_t>(parts.config.shutdown_timeout_s * 1000.0));
   const auto deadline = std::chrono::system_clock::now() + patience;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <future>
 #include <map>
 #include <thread>
 
@@ -21,6 +22,9 @@ namespace {
 
 using namespace rmlcell;          // NOLINT: this file is the wiring of the server
 using namespace rmlcell::server;  // NOLINT
+
+constexpr double kPatienceBehindTimeout_s = 1.0;
+constexpr std::chrono::seconds kPatienceForLog{1};
 
 std::map<std::string, std::string> Environment() {
   std::map<std::string, std::string> variables;
@@ -44,7 +48,6 @@ int Refuse(const Error& error) {
 Status Configure(const std::string& file, const std::map<std::string, std::string>& flags,
                  Config& config) {
   const auto environment = Environment();
-  config.state_directory = DefaultStateDirectory(environment);
   if (!file.empty()) {
     if (const Status read = ReadConfigFile(file, config); !read) return read.error();
   }
@@ -59,6 +62,37 @@ Status Configure(const std::string& file, const std::map<std::string, std::strin
   }
   if (config.state_directory.empty()) config.state_directory = DefaultStateDirectory(environment);
   return ValidateConfig(config);
+}
+
+// All that was acknowledged is on the disk: a call that does not end keeps nobody from stopping,
+// nor does a log that nobody reads.
+void EndIn(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  std::thread([] {
+    std::this_thread::sleep_for(kPatienceForLog);
+    _exit(0);
+  }).detach();
+  spdlog::error("a call does not end; stopping without it");
+  spdlog::shutdown();
+  _exit(0);
+}
+
+// Signals are taken by a thread of its own, and only there: a handler must not stop a server. The
+// one that ends it.
+std::future<int> SignalToEnd(double patience_s) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::promise<int> told;
+  std::future<int> signal_to_end = told.get_future();
+  std::thread([signals, patience_s, told = std::move(told)]() mutable {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    told.set_value(signal);
+    EndIn(patience_s);
+  }).detach();
+  return signal_to_end;
 }
 
 }  // namespace
@@ -102,11 +136,8 @@ Every key of the configuration is a flag too, and a variable of the environment:
     return Refuse(log.error());
   }
   for (const std::string& hint : MistypedVariables(Environment())) spdlog::warn("{}", hint);
-  // Signals are taken by this thread alone, and only here: a handler must not stop a server.
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::future<int> signal_to_end =
+      SignalToEnd(config.shutdown_timeout_s + kPatienceBehindTimeout_s);
   ::signal(SIGPIPE, SIG_IGN);
   // Who starts the server may ignore it, and then nobody would hear how a process of ours ended.
   ::signal(SIGCHLD, SIG_DFL);
@@ -116,20 +147,10 @@ Every key of the configuration is a flag too, and a variable of the environment:
   for (const std::string& address : (*cell)->grpc_addresses()) spdlog::info("gRPC on {}", address);
   if (!(*cell)->web_address().empty()) spdlog::info("web on http://{}/", (*cell)->web_address());
   spdlog::info("rmlcelld {} is ready, store in {}", kVersion, config.state_directory);
-  int signal = 0;
-  sigwait(&signals, &signal);
-  spdlog::info("stopping on {}", strsignal(signal));
-  // All that was acknowledged is on the disk: a call that does not end keeps nobody from stopping.
-  std::thread([patience = config.shutdown_timeout_s + 1.0] {
-    std::this_thread::sleep_for(std::chrono::duration<double>(patience));
-    spdlog::error("a call does not end; stopping without it");
-    spdlog::shutdown();
-    _exit(0);
-  }).detach();
+  spdlog::info("stopping on {}", strsignal(signal_to_end.get()));
   (*cell)->Stop();
   spdlog::info("stopped");
   spdlog::shutdown();
   // gRPC takes a second or more to end its own threads; nothing of ours is left to do.
-  cell->release();
   _exit(0);
 }

@@ -3,20 +3,15 @@
 #include <google/protobuf/util/time_util.h>
 #include <malloc.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <deque>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "proto/bridge/findings.h"
-#include "server/base/secret.h"
-#include "server/base/version.h"
 #include "server/host/answers_due.h"
 #include "server/host/background.h"
 #include "server/host/further_lines.h"
@@ -157,9 +152,7 @@ class HostProcess {
       return servers_.others().empty() ? Quit(69) : void();  // another server may take it
     }
     const v1::HostWelcome& message = welcome->message;
-    if (fence_ != 0 && message.fence() != fence_) {
-      return LoseMachine("another host");
-    }
+    if (fence_ != 0 && message.fence() != fence_) return LoseMachine("another host");
     fence_ = message.fence();
     lease_.Given(nanoseconds(TimeUtil::DurationToNanoseconds(message.lease())), joining_since_);
     inbox_.SetHeardAt(now);
@@ -360,7 +353,19 @@ class HostProcess {
   // By a server, whichever.
   bool IsHeard() const { return line_ != nullptr || further_.IsHeard(); }
 
+  // As soon as it is due.
+  void TellStatus(const HostTime& now) {
+    if (machine_ == nullptr || !IsHeard() || !rhythm_.IsDue(now.steady)) return;
+    const v1::MachineStatus status = machine_->StatusAt(now);
+    state_told_ = machine_->State();
+    rhythm_.Told(now.steady, machine_->moves() ? kStatusMoving : kStatusStanding);
+    further_.SendStatus(status);
+    if (line_ != nullptr) line_->SendStatus(status);
+  }
+
+  // Behind how the machine stands with it: who has an answer and looks sees what came of it.
   void SendAnswer(v1::HostOrderAnswer answer) {
+    TellStatus(Now());
     if (further_.Answer(answer) || line_ == nullptr) return;
     v1::HostRequest request;
     *request.mutable_answer() = std::move(answer);
@@ -455,14 +460,8 @@ class HostProcess {
     SendEdits(now);
     Write(now, false);
     ShowHandbox(now.steady);
-    const v1::MachineState state = machine_->State();
-    if (IsHeard() && (state != state_told_ || rhythm_.IsDue(now.steady))) {
-      const v1::MachineStatus status = machine_->StatusAt(now);
-      state_told_ = state;
-      rhythm_.Told(now.steady, machine_->moves() ? kStatusMoving : kStatusStanding);
-      further_.SendStatus(status);
-      if (line_ != nullptr) line_->SendStatus(status);
-    }
+    if (machine_->State() != state_told_) rhythm_.TellAt(now.steady);
+    TellStatus(now);
     if (line_ != nullptr && lease_.RenewalDue(SinceBoot())) {
       lease_.Renews(SinceBoot());
       v1::HostRequest renew;

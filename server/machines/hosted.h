@@ -21,6 +21,7 @@ struct Hosts::Host {
 
   // What halts and what begins go out one behind the other. Taken before `mutex`.
   std::mutex in_order;
+  std::mutex telling;  // who watches hears of it in order; likewise
 
   std::mutex mutex;               // a leaf, like that of Hosts
   std::condition_variable rests;  // nothing of it is being stored

@@ -164,13 +164,20 @@ void Hosts::TakeStatus(const HostPointer& host, v1::MachineStatus status) {
     const std::lock_guard lock(host->mutex);
     news = !host->status || host->status->state() != status.state() ||
            host->status->start_blockers_size() != status.start_blockers_size();
-    host->status = status;
+    host->status = std::move(status);
   }
-  Publish(*host, std::move(status));
+  Publish(*host);
   if (news) Changed(host->id);
 }
 
-void Hosts::Publish(const Host& host, v1::MachineStatus status) {
+// How it stands now: what one thread learned of it is not told behind what another one did since.
+void Hosts::Publish(Host& host) {
+  const std::lock_guard telling(host.telling);
+  v1::MachineStatus status;
+  {
+    const std::lock_guard lock(host.mutex);
+    status = *host.status;
+  }
   const std::string name = MachineName(host.id);
   if (const auto unfinished = needs_.store.UnfinishedJobs()) AddJobs(host.id, *unfinished, status);
   needs_.feed.Publish(name, status.SerializeAsString());
@@ -353,7 +360,7 @@ void Hosts::Look() {
   for (const HostPointer& host : all) {
     DropLate(host);
     bool silent = false;
-    std::optional<v1::MachineStatus> lost;
+    bool lost = false;
     std::vector<Answered> halts;  // that nobody has answered yet
     {
       const std::lock_guard lock(host->mutex);
@@ -367,7 +374,7 @@ void Hosts::Look() {
                         host->status->state() != v1::MACHINE_STATE_STARTING;
       if (!host->gone && told && quiet > patience) {
         SetLost(*host->status);
-        lost = host->status;
+        lost = true;
         std::erase_if(host->pending, [&halts](auto& row) {
           if (row.second.halts) halts.push_back(std::move(row.second.done));
           return row.second.halts;
@@ -377,14 +384,7 @@ void Hosts::Look() {
     for (const Answered& done : halts) done(NotLive(kHaltsUnseen));
     if (lost) {
       spdlog::warn("the host of {} is silent", MachineName(host->id));
-      Publish(*host, *std::move(lost));
-      // It may have been heard in this moment, and told before this: the newest is told last.
-      std::optional<v1::MachineStatus> heard;
-      {
-        const std::lock_guard lock(host->mutex);
-        if (host->status->state() != v1::MACHINE_STATE_LOST) heard = host->status;
-      }
-      if (heard) Publish(*host, *std::move(heard));
+      Publish(*host);
       Changed(host->id);
     }
     if (silent) host->link->Close(NotLive("the host is silent"));
@@ -395,22 +395,22 @@ void Hosts::Leave(const HostLink& link) {
   const HostPointer host = Find(link);
   if (host == nullptr) return;
   std::map<std::int64_t, Host::Pending> pending;
-  std::optional<v1::MachineStatus> status;
+  bool was_seen = false;
   bool handed_back = false;
   {
     const std::lock_guard lock(host->mutex);
     host->gone = true;
     pending.swap(host->pending);
-    if (host->status) SetLost(*host->status);
-    status = host->status;
+    was_seen = host->status.has_value();
+    if (was_seen) SetLost(*host->status);
     handed_back = host->handed_back;
   }
   if (handed_back) {
     const std::lock_guard lock(mutex_);
     if (const auto place = hosts_.find(host->id); place != hosts_.end() && place->second == host)
       hosts_.erase(place);
-  } else if (status) {
-    Publish(*host, *std::move(status));
+  } else if (was_seen) {
+    Publish(*host);
   }
   for (auto& [number, one] : pending) one.done(NotLive("its host is not heard of any more"));
   spdlog::info("the host of {} is gone", MachineName(host->id));

@@ -157,7 +157,7 @@ class Hosts {
   static void Retire(const HostPointer& host);
   void HandOver(Host& before, const Host& host) const;
   void Release(const HostPointer& host);
-  void Publish(const Host& host, v1::MachineStatus status);
+  void Publish(Host& host);  // precondition: it has told how it stands
   void LookAtMemory(bool at_once = false);
   void Changed();
   void Changed(const std::string& machine);

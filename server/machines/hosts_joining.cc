@@ -178,6 +178,12 @@ std::optional<Hosts::Given> Hosts::GivenTo(const v1::HostHello& hello, const std
 // has the lock of it on the same computer has the machine, and a host of another one gets it from a
 // person alone. LIVE-3.02, 3.03
 Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& machine) {
+  const auto held = needs_.store.MachineLeases();
+  if (!held) return held.error();
+  const auto other = std::ranges::find(*held, machine, &storage::MachineLease::machine);
+  // A lease that was given back does not come to life again: who had it ends. LIVE-3.05
+  if (hello.fence() != 0 && (other == held->end() || other->fence != hello.fence()))
+    return Error{ErrorCode::kCellMachineTaken, "the lease of " + hello.host() + " is over", {}};
   storage::MachineClaim claim{.machine = machine,
                               .host = hello.host(),
                               .server = needs_.server,
@@ -191,19 +197,16 @@ Result<Hosts::Taken> Hosts::Take(const v1::HostHello& hello, const std::string& 
     if (given) given_.erase(machine);
     return Taken{.lease = *std::move(lease)};
   }
-  const auto held = needs_.store.MachineLeases();
-  if (!held) return held.error();
-  for (const storage::MachineLease& other : *held) {
-    if (other.machine != machine) continue;
+  if (other != held->end()) {
     const Instant now = needs_.clock();
     Seen& seen = seen_[machine];
-    if (seen.lease != other) seen = {.lease = other, .since = now};
-    claim.seen = other;
-    const bool could = !other.pinned || hello.has_device();
+    if (seen.lease != *other) seen = {.lease = *other, .since = now};
+    claim.seen = *other;
+    const bool could = !other->pinned || hello.has_device();
     claim.by_hand =
         could &&
-        (given || (other.pinned ? IsOf(other.host, hello.computer()) : IsGone(other.host)));
-    if (!claim.by_hand && (other.pinned || now - seen.since < other.duration + kObserved))
+        (given || (other->pinned ? IsOf(other->host, hello.computer()) : IsGone(other->host)));
+    if (!claim.by_hand && (other->pinned || now - seen.since < other->duration + kObserved))
       return lease.error();
   }
   lease = needs_.store.TakeMachine(claim);

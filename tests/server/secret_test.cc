@@ -73,8 +73,8 @@ TEST(Secret, IsNoneWhereAFolderStands) {
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::kCellConfiguration);
   EXPECT_EQ(made.error().detail, path + ": Is a directory");
+  EXPECT_FALSE(std::filesystem::exists(path + ".new"));  // nothing of it stays behind
   std::filesystem::remove_all(path);
-  std::filesystem::remove(path + ".new");
 }
 
 }  // namespace

@@ -121,5 +121,20 @@ TEST_F(HostsTest, AHostThatComesBackFreesTheJobOfTheOneBefore) {
   EXPECT_TRUE(Must(bed.store().GetJob(job)).held);
 }
 
+// LIVE-3.05: a host that is told to end, and is not heard of until its machine has been given back,
+// gets no other lease: it ends.
+TEST_F(HostsTest, ALeaseThatIsOverStaysOver) {
+  const std::int64_t fence = Fence(*Joined());
+  const v1::HostHello late = Hello("elsewhere/1", fence);
+  hosts.Forget("mill-1");
+  EXPECT_EQ(Refused(late), ErrorCode::kCellMachineTaken);
+  EXPECT_FALSE(hosts.IsHosted("mill-1"));
+  EXPECT_TRUE(Must(bed.store().MachineLeases()).empty());
+  const auto next = Joined(Hello("elsewhere/2"));
+  EXPECT_GT(Fence(*next), fence);
+  EXPECT_EQ(Refused(late), ErrorCode::kCellMachineTaken);
+  EXPECT_FALSE(next->closed());
+}
+
 }  // namespace
 }  // namespace rmlcell::server
