@@ -376,6 +376,7 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
   }
   const std::int64_t runs = machine().status().last_run;
   const bool moved = moves();
+  const bool stopping = machine().state() == machine::MachineState::kStopping;
   const machine::Mode mode = machine().status().mode;
   const Status done = key != nullptr ? Press(*key, order) : machine().Apply(input);
   if (!done) {
@@ -385,9 +386,12 @@ Status HostMachine::Apply(const machine::MachineInput& input, const v1::HostOrde
     return done.error();
   }
   if (stands && machine().status().last_run != runs) Record(*stands, place);
-  // START let it go on; keys that move the machine in a hold do not.
-  const bool goes_on = machine().status().run.phase == machine::RunPhase::kRunning;
-  if (key != nullptr && !moved && goes_on) held_for_.reset();
+  // START let it go on; keys that move the machine in a hold do not, and of those that would halt
+  // it the control may take none.
+  const bool goes_on = machine().status().run.phase == machine::RunPhase::kRunning &&
+                       machine().state() != machine::MachineState::kStopping;
+  if (key != nullptr && goes_on)
+    held_for_ = moved && !stopping ? std::get<2>(before) : std::nullopt;
   const bool left = mode == machine::Mode::kRemote && machine().status().mode != mode;
   if (key != nullptr && left && !job_.empty()) held_for_ = v1::HOLD_REASON_MODE;
   mark_due_ = true;

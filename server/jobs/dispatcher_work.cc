@@ -493,7 +493,7 @@ void Dispatcher::Finish(const std::shared_ptr<Worker>& worker, v1::WorkerFinish&
   end.events.push_back(EndedEvent(finish.outcome()));
   for (auto& [name, artifact] : assignment.artifacts) end.artifacts.push_back(std::move(artifact));
   for (v1::LinkedExecutable& made : *finish.mutable_executables()) {
-    if (made.object_revision() == 0 || made.content().size() > storage::kProgramBytesMax) continue;
+    if (made.content().size() > storage::kProgramBytesMax) continue;
     end.executables.push_back(
         {made.slot(), made.object_revision(), std::move(*made.mutable_content())});
   }

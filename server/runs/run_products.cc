@@ -116,7 +116,7 @@ std::string RunProducts::Next(const std::stop_token& stop) {
 
 void RunProducts::Work(const std::stop_token& stop) {
   for (std::string machine = Next(stop); !machine.empty(); machine = Next(stop)) {
-    bool done = true;
+    bool done = false;
     try {
       done = LookAt(machine, stop);
     } catch (const std::exception& error) {

@@ -298,7 +298,6 @@ void RunQueue::Begin(const std::string& machine, const storage::LeasedJob& lease
   }
   v1::HostOrder order;
   order.set_caller(leased.job.caller);
-  order.mutable_run_job();
   Send(machine, leased, std::move(order),
        [this, machine, leased](const Result<v1::HostOrderAnswer>& answer) {
          needs_.executor.Post(
@@ -350,8 +349,7 @@ void RunQueue::EndUnread(const storage::LeasedJob& leased, const Error& why, boo
 std::optional<storage::LeasedJob> RunQueue::StillLeased(const storage::LeasedJob& leased) {
   const auto job = needs_.store.GetJob(leased.job.id);
   const auto attempts = needs_.store.ListAttempts(leased.job.id);
-  if (!job || !attempts || attempts->empty() || job->state != storage::JobState::kRunning)
-    return std::nullopt;
+  if (!job || !attempts || attempts->empty()) return std::nullopt;
   const storage::AttemptRecord& attempt = attempts->back();
   if (attempt.fence != leased.lease.fence || attempt.ended_at) return std::nullopt;
   return storage::LeasedJob{.lease = leased.lease, .job = *job};

@@ -10,10 +10,11 @@ import urllib.error
 import urllib.request
 import uuid
 
-from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, cell_pb2, common_pb2, detail_of, endless_job, eventually, grpc,
-                  inline_job, job_pb2, machine_status_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_an_attempt_counts,
-                  wait_until_it_runs)
+from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, awaited, cell_pb2, common_pb2, detail_of, endless_job,
+                  eventually, grpc, inline_job, job_pb2, machine_status_pb2, machine_pb2, program_pb2, submit, wait_for_end,
+                  wait_until_an_attempt_counts, wait_until_it_runs)
 from command import run
+from runs import RunTestCase
 
 
 # Of what is to be seen on its way: a busy machine may come too late for the first of them.
@@ -543,6 +544,10 @@ class Stops(unittest.TestCase):
         again = self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=job.name))
         self.assertIn(again.state, (job_pb2.Job.STATE_QUEUED, job_pb2.Job.STATE_RUNNING))
         self.assertLessEqual(again.attempts, 1)  # handed back: the attempt does not count
+        watch = self.cell.jobs().WatchJob(job_pb2.WatchJobRequest(after_sequence=0, name=job.name, events_only=True), timeout=60)
+        told = [event for _, event in zip(range(again.last_sequence), (one.event for one in watch if one.HasField("event")))]
+        queued = [one.state for one in told].count(job_pb2.Job.STATE_QUEUED)  # as it was submitted, and handed back: not lost
+        self.assertEqual((queued, any(one.HasField("message") for one in told)), (2, False))
         self.cell.jobs().CancelJob(job_pb2.CancelJobRequest(name=job.name))
 
     # A number from before a restart is good in the store that goes on, and void when a backup was put back over it.
@@ -580,6 +585,15 @@ class Stops(unittest.TestCase):
                 messages.append(message)
         except grpc.RpcError:
             pass
+
+
+class Runs(RunTestCase):
+    # LIVE-5.02, LIVE-5.08: it begins when its time has come, and its products come behind its end. Others: test_runs.py.
+    def test_a_run_has_its_products(self):
+        self.enable()
+        name = self.submit(not_before_time={"seconds": int(time.time()) + 2})
+        self.assertEqual(self.becomes(name, "SUCCEEDED", "FAILED"), "SUCCEEDED")
+        awaited(lambda: self.events(name)[-1].HasField("products_made"))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,13 @@
 """What the cell keeps: machines, programs, projects."""
 import hashlib
+import json
+import os
+import signal
 import unittest
+import urllib.request
 
 from cell import (WithCell, cell_pb2, common_pb2, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2)
+from live import MILL, LiveTestCase
 
 
 class Machines(WithCell):
@@ -284,6 +289,40 @@ class Projects(WithCell):
         source = self.cell.programs().GetProgramContent(
             program_pb2.GetProgramContentRequest(name="machines/optimo-1/programs/24")).content.decode()
         self.assertIn("WORKDEF 1,0 (6.5, 80.0, 1.5, 95.0)", source)
+
+    # An answer may be longer than the 4 MiB that gRPC takes by itself: also behind the web port.
+    def test_a_long_list_comes_through_the_web_port(self):
+        names = [f"long-{number}" for number in range(70)]
+        for name in names:
+            self.cell.projects().CreateProject(project_pb2.CreateProjectRequest(project_id=name, project={"notes": 65_000 * "n"}))
+        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.ProjectService/ListProjects", b"{}",
+                                         {"Content-Type": "application/json"})
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            listed = {project["name"] for project in json.load(answer)["projects"]}
+        self.assertLessEqual({f"projects/{name}" for name in names}, listed)
+
+
+class Hosted(LiveTestCase):
+    # LIVE-2.03: the server says where it hears nothing of a host.
+    def test_a_host_that_falls_silent_is_lost(self):
+        self.live.enable()
+        host = self.live.host()
+        os.kill(host, signal.SIGSTOP)
+        self.live.wait("LOST")
+        os.kill(host, signal.SIGCONT)
+
+    # LIVE-5.03: what is stored is in the machine before its next order; what a run is in stays, and nothing else does.
+    def test_a_program_that_runs_stays(self):
+        self.live.enable()
+        self.live.acquire()
+        self.live.store(5)
+        self.live.ask("StartMachine", program=5)
+        self.live.store(6)
+        delete = self.cell.programs().DeleteProgram
+        with self.assertRaises(grpc.RpcError) as in_use:
+            delete(program_pb2.DeleteProgramRequest(name=f"{MILL}/programs/5"))
+        self.assertEqual(detail_of(in_use.exception).code, "CELL-E9421")
+        delete(program_pb2.DeleteProgramRequest(name=f"{MILL}/programs/6"))
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -99,18 +100,51 @@ TEST_F(ChildProcessTest, IsInAGroupOfItsOwnAndHearsEachSignal) {
   EXPECT_EQ(Told("it.blocked"), "SigBlk:\t0000000000000000\n");
 }
 
-// With a log it reads nothing, and what it says beside goes nowhere.
+// As long as it lives a file stands where this process has one of its first three.
+class InPlaceOf {
+ public:
+  InPlaceOf(int number, const std::string& file)
+      : number_(number), before_(::fcntl(number, F_DUPFD_CLOEXEC, 10)) {
+    const int open = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    EXPECT_EQ(::dup2(open, number), number);
+    ::close(open);
+  }
+  ~InPlaceOf() {
+    if (before_ < 0) {
+      ::close(number_);
+      return;
+    }
+    ::dup2(before_, number_);
+    ::close(before_);
+  }
+  InPlaceOf(const InPlaceOf&) = delete;
+  InPlaceOf& operator=(const InPlaceOf&) = delete;
+
+ private:
+  const int number_;
+  const int before_;
+};
+
+// With a log it reads nothing, and what it says beside goes nowhere, whatever its server has there.
 TEST_F(ChildProcessTest, HasNoInputBesideItsLog) {
   const std::string script = Script("cat > $1.input\necho out && touch $1.said\nexit 0");
-  EXPECT_EQ(Run({script, File("it")}, {}, File("log")), 0);
+  std::ofstream(File("typed")) << "for the server\n";
+  {
+    const InPlaceOf input(STDIN_FILENO, File("typed"));
+    const InPlaceOf output(STDOUT_FILENO, File("printed"));
+    EXPECT_EQ(Run({script, File("it")}, {}, File("log")), 0);
+  }
   EXPECT_TRUE(std::filesystem::exists(File("it.input")));
   EXPECT_EQ(Told("it.input"), "");
   EXPECT_TRUE(std::filesystem::exists(File("it.said")));
+  EXPECT_EQ(Told("printed"), "");
   EXPECT_EQ(Told("log"), "");
 }
 
 TEST_F(ChildProcessTest, OfNoProgramThereIsNone) {
-  EXPECT_TRUE(CheckProgram(Script("exit 0")));
+  const std::string there = Script("exit 0");
+  errno = EIO;  // of something that failed before
+  EXPECT_TRUE(CheckProgram(there));
   const auto why = [](const std::string& program) {
     const Status checked = CheckProgram(program);
     EXPECT_FALSE(checked);

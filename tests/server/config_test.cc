@@ -6,6 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace rmlcell::server {
 namespace {
@@ -186,6 +189,22 @@ INSTANTIATE_TEST_SUITE_P(Config, EveryKey, testing::ValuesIn(AllKeys()), [](cons
   name.replace(name.find('.'), 1, "_");
   return name;
 });
+
+// Whoever wrote something else hears what may stand there.
+TEST(Config, AValueThatIsNoneIsToldWithWhatIsAllowed) {
+  const std::vector<std::tuple<std::string, std::string, std::string>> cases = {
+      {"shutdown.timeout_s", "soon", "takes a number, not 'soon'"},
+      {"shutdown.timeout_s", "61", "is 61, allowed are 0 to 60"},
+      {"workers.paced", "two", "takes a whole number, not 'two'"},
+      {"log.format", "xml", "is 'xml', allowed are text, json"},
+      {"machines.hosts", "none", "is 'none', allowed are all, enabled"}};
+  for (const auto& [key, text, said] : cases) {
+    Config config;
+    const Status set = KeyOf(key).set(config, text);
+    ASSERT_FALSE(set) << key;
+    EXPECT_EQ(set.error().detail, said);
+  }
+}
 
 TEST(Config, HasACaseHereForEachKeyAndTellsItsMeaning) {
   std::set<std::string> tested;

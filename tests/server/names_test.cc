@@ -89,6 +89,7 @@ TEST(Names, ProgramNumbersAreSlotsOrTheirExecutables) {
       EXPECT_EQ(name->executable, one.executable);
     }
   }
+  EXPECT_FALSE(ParseProgramName("machines/m/programs/100")->executable);  // there is no slot 0
 }
 
 TEST(Names, AnErrorShowsAReadableBeginningOnly) {

@@ -77,5 +77,18 @@ TEST(Secret, IsNoneWhereAFolderStands) {
   std::filesystem::remove_all(path);
 }
 
+// On a disk without room (full(4)) no half of a secret is kept.
+TEST(Secret, IsNoneWithoutRoomForIt) {
+  const std::string path =
+      testing::TempDir() + "/rmlcell-secret-without-room-" + std::to_string(::getpid());
+  std::filesystem::create_symlink("/dev/full", path + ".new");
+  const Result<std::string> made = KeptSecret(path);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, ErrorCode::kCellConfiguration);
+  EXPECT_EQ(made.error().detail, path + ": No space left on device");
+  EXPECT_FALSE(std::filesystem::exists(path));
+  std::filesystem::remove(path + ".new");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -25,9 +25,9 @@ class RampsBelow {
 
   // The highest speed to which there are ramps from any speed up to the first of them; that one
   // when there is none above it.
+  // Precondition: more than that.
   double HighestUpTo(double high) {
     const double start = most_.front();
-    if (!(high > start)) return start;
     if (BoundsFit(start, high)) return high;
     const auto from_start = [&](double to) { return Fits(start, to); };
     const double found = Highest(high, from_start);  // nearly always good for slower ones
@@ -185,6 +185,15 @@ BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
                   step_mm * static_cast<double>(steps_back), limits);
   const double high = std::min(up.HighestUpTo(most[top]), down.HighestUpTo(most[top]));
   if (high < std::max(most[0], most[kSteps])) return steady;
+  // Where no ramp leads up from an end, all up to the most open place is passed at its speed.
+  const auto too_fast = [high](std::span<const double> part) {
+    return high == part.front() && std::ranges::any_of(part, [high](double here) {
+             return high > here * (1.0 + kLastDigits);
+           });
+  };
+  if (too_fast(most.first(top + 1)) ||
+      too_fast(std::span<const double>(back).first(steps_back + 1)))
+    return steady;
   return {.count = 2, .start = most[0], .open = high, .middle = most[kSteps]};
 }
 

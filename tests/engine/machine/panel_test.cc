@@ -114,6 +114,7 @@ TEST_F(HandboxDisplay, FollowsAFunctionByHand) {
 TEST_F(HandboxDisplay, AFunctionThatFailsIsNotReady) {
   AtStep4("RETURN\n");
   Tap({"F3", "4", "5", "ENT", "ENT", "1"});
+  EXPECT_EQ(Display(), "ERROR 7103          ");  // at once
   GoOn(At(1.0));
   EXPECT_EQ(Over().outcome.code, ErrorCode::kFunctionMissing);
   EXPECT_EQ(Display(), "ERROR 7103          ");

@@ -124,6 +124,37 @@ TEST(BendEndPlaces, SlowerRampsAreLookedAtBehindAStepThatIsOpen) {
   EXPECT_GT(bend.open, 19.5);
 }
 
+// The ramp from 10 to 20 mm/s is past the first step of 0.05 mm after a sixteenth of its first
+// phase: a dip there alone is the speed all along.
+TEST(BendEndPlaces, ADipAtTheFirstStepAloneCounts) {
+  const BendSpeeds speeds = PlacesOf([](std::size_t k) {
+    return k == 0 ? 10.0 : k == 1 ? 9.9 : 20.0;
+  });
+  const SpeedProfile ramp = SpeedProfile::OneRamp(10.0, 20.0, kByJerk);
+  ASSERT_GT(ramp.At(ramp.phase(0).duration_s / 16.0).s, 2.0 * 0.05);
+  const BendStretches bend = StretchesOf(speeds, 24.0 * 0.05, kByJerk);
+  EXPECT_EQ(bend.count, 1U);
+  EXPECT_EQ(bend.start, 9.9);
+  EXPECT_EQ(bend.open, 9.9);
+  EXPECT_EQ(bend.middle, 9.9);
+}
+
+// Tight right behind its start, open at its half and tight again in its middle: no ramp up keeps
+// below, and at the speed of the start the first place would be too fast. So it is the least of
+// all.
+TEST(BendEndPlaces, ADipIsNotPassedAtTheSpeedBeforeIt) {
+  const BendSpeeds speeds = PlacesOf([](std::size_t k) {
+    if (k == 0) return 15.0;
+    const auto step = static_cast<double>(k);
+    return k <= 12 ? 12.0 + 8.0 * (step - 1.0) / 11.0 : 20.0 - 10.0 * (step - 12.0) / 12.0;
+  });
+  const BendStretches bend = StretchesOf(speeds, 100.0, kByJerk);
+  EXPECT_EQ(bend.count, 1U);
+  EXPECT_EQ(bend.start, 10.0);
+  EXPECT_EQ(bend.open, 10.0);
+  EXPECT_EQ(bend.middle, 10.0);
+}
+
 // A jerk of less than a step: the ramp from the start, 10 + j s^2 / 200 at first, is faster than a
 // bend that opens by 0.001 s^2 mm/s, whatever the figures are that it is bounded by.
 TEST(BendEndPlaces, AGentleJerkOnLongSteps) {

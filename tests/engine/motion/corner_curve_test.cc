@@ -104,6 +104,8 @@ TEST(CornerCurve, PlainIsTheSameCurve) {
       ExpectNear(plain.SecondByLength(u).point, ends.SecondByLength(u).point, 1e-11);
       EXPECT_EQ(plain.At(u).a_rad, 0.4);
       EXPECT_EQ(plain.At(u).b_rad, -0.3);
+      EXPECT_EQ(plain.HeadAt(u).a_rad, 0.4);
+      EXPECT_EQ(plain.HeadAt(u).b_rad, -0.3);
     }
     EXPECT_FALSE(plain.in_axes());
   }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/units.h"
 #include "engine/motion/corner/axes_corner.h"
@@ -42,6 +44,39 @@ TEST(CornerCut, FollowsTheChangeOfEachRate) {
   // Both: the wider one counts, not their sum.
   EXPECT_NEAR(cut(WithRates(0.02, 0.05, 0.01, 0.02)), std::sqrt(1.5 * 0.03 * kCube / 400.0), 1e-9);
   EXPECT_NEAR(cut(WithRates(0.02, 0.03, 0.01, 0.06)), std::sqrt(1.5 * 0.05 * kCube / 700.0), 1e-9);
+}
+
+// Whichever angle begins or ceases to turn there, it is a bend, and the head turns in it.
+TEST(CornerPassage, OneRateAloneIsABend) {
+  for (const auto& [a_in, a_out, b_in, b_out] : {std::array{0.02, 0.0, 0.0, 0.0},
+                                                 {0.0, 0.02, 0.0, 0.0},
+                                                 {0.0, 0.0, 0.02, 0.0},
+                                                 {0.0, 0.0, 0.0, 0.02}}) {
+    const Corner corner = WithRates(a_in, a_out, b_in, b_out);
+    EXPECT_EQ(corner.passage(), Passage::kBlend);
+    EXPECT_FALSE(corner.plain());
+    EXPECT_FALSE(corner.straight());
+  }
+}
+
+// Straight on from an arc of R 20 into one of R 30, d = 1.2 |dkappa| w^3 / J: bends to the other
+// side add up, those to the same side do not. motion.md 4.3
+TEST(CornerCut, FollowsTheJumpBetweenTwoArcs) {
+  constexpr double kAngle = 0.5;
+  const PathPiece in =
+      PathPiece::Circle({{-20.0 * std::sin(kAngle), 20.0 - 20.0 * std::cos(kAngle), 0}}, {0, 20, 0},
+                        {0, 0, 1}, kAngle, 0, 0);
+  const PathPiece same = PathPiece::Circle({{0, 0, 0}}, {0, 30, 0}, {0, 0, 1}, kAngle, 0, 0);
+  const PathPiece other = PathPiece::Circle({{0, 0, 0}}, {0, -30, 0}, {0, 0, -1}, kAngle, 0, 0);
+  const double scale = 1.2 * 60.0 * 60.0 * 60.0 / 32000.0;
+  for (const auto& [out, jump] :
+       {std::pair{&same, 1.0 / 20.0 - 1.0 / 30.0}, {&other, 1.0 / 20.0 + 1.0 / 30.0}}) {
+    const Corner corner = Corner::Between(in, *out);
+    EXPECT_TRUE(corner.straight());
+    EXPECT_EQ(corner.passage(), Passage::kBlend);
+    EXPECT_NEAR(corner.CutFor(60.0, StandardMachine()), scale * jump, 1e-9);
+    EXPECT_NEAR(corner.cut_max_mm(), 10.0, 1e-12);
+  }
 }
 
 // With every length and every linear figure times c the axes follow as they did. motion.md 10,

@@ -68,6 +68,17 @@ TEST(Corner, UncappedCornersNeedNoBound) {
   }
 }
 
+// The same up to the sharpest turn that is a bend, where its table ends.
+TEST(Corner, ThePeakOfJerkUpTo175Degrees) {
+  const MachineLimits machine = StandardMachine();
+  for (const double degrees : {174.93, 174.96, 174.99}) {
+    const Bend bend = Of(degrees);
+    const double exact = SpeedOnCurve(bend.curve, Head{}, machine);
+    EXPECT_LE(bend.corner.PlainSpeed(1.0, machine), exact * (1 + 1e-9)) << degrees;
+    EXPECT_GE(bend.corner.PlainSpeed(1.0, machine), exact * (1 - 2e-6)) << degrees;
+  }
+}
+
 // Length by the table and by quadrature agree; the curve lies inside the triangle of its control
 // points.
 TEST(Corner, LengthAndTriangle) {

@@ -148,6 +148,30 @@ TEST(CornerCurve, SlowestPlaceIsTheSlowest) {
   EXPECT_LT(inside, 400);
 }
 
+// With every length times c the slowest place stays where it is, and the distance from a point is c
+// times as great. motion.md 10, property 6
+TEST(CornerCurve, PlacesAreAlikeAtEveryScale) {
+  const auto of = [](double turn, double scale) {
+    const MachineVector out{std::cos(turn), std::sin(turn), 0};
+    return CornerCurve(
+        {.pose = {{-scale, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {0, 0.6 / scale, 0}},
+        {.pose = {out * scale, 0, 0},
+         .tangent = out,
+         .curvature = MachineVector{-out.y(), out.x(), 0} * (-0.4 / scale)},
+        scale);
+  };
+  const MachinePoint beside{0.1, -0.35, 0.2};
+  for (const double turn : {0.7, 1.9, 2.6}) {
+    const CornerCurve curve = of(turn, 1.0);
+    for (const double scale : {1e-4, 1e-2, 1e3}) {
+      const CornerCurve scaled = of(turn, scale);
+      EXPECT_NEAR(scaled.SlowestPlace(), curve.SlowestPlace(), 1e-9) << turn << " " << scale;
+      EXPECT_NEAR(scaled.DistanceFrom(beside * scale) / scale, curve.DistanceFrom(beside), 1e-9)
+          << turn << " " << scale;
+    }
+  }
+}
+
 // Slow at both ends, and slower still at one narrow place between them. With w = u - 1/2 and a
 // scale of 1 the curve goes along X at 1/16 + 7.5 w^2 - 15 w^4 and along Y at 128 w (2 w^2 - 1/2):
 // so at 1 at its ends, at 1/16 in its middle, and 0.02 beside that at more than 1 again.

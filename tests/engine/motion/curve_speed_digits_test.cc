@@ -164,6 +164,34 @@ TEST(CurveSpeedDigits, OfAxesBetweenLines) {
   }
 }
 
+// Two limits nearly alike: the lower one counts, though the other one may be the lower at all
+// places that are looked at first.
+TEST(CurveSpeedDigits, OfTwoLimitsNearlyAlike) {
+  Dice dice(2129);
+  int pairs = 0;
+  for (int round = 0; round < 80; ++round) {
+    SCOPED_TRACE(round);
+    Passing passing{CurveOf(dice, dice.Magnitude(1.0, 30.0), 0.6, 0.5), HeadOf(dice), AllStrong()};
+    const auto one = static_cast<std::size_t>(dice.Uniform(2.0, kDigitLimits - 0.001));
+    const auto other = static_cast<std::size_t>(dice.Uniform(2.0, kDigitLimits - 0.001));
+    const double more = 1.0 + dice.Magnitude(1e-5, 3e-3);
+    if (one == other) continue;
+    for (const std::size_t limit : {one, other}) {
+      const double wanted = limit == one ? 20.0 : 20.0 * more;
+      const double share = wanted / passing.Least(limit, passing.curve.SlowestPlace());
+      const std::size_t axis = (limit - 2) / 2;
+      if (limit % 2 == 0) {
+        passing.machine.axes.speed[axis] *= share;
+      } else {
+        passing.machine.axes.acceleration[axis] *= share * share;
+      }
+    }
+    ExpectLeastOfAll(passing);
+    ++pairs;
+  }
+  EXPECT_GT(pairs, 50);
+}
+
 // Between two arcs of these curvatures that meet at this turn, cut 1 mm from where they do.
 CornerCurve BetweenArcs(double turn, double bend_in, double bend_out) {
   const auto turned = [](const MachineVector& v, double angle) {

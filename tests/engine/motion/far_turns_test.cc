@@ -155,6 +155,12 @@ TEST(FarTurns, OfTrapezoids) {
   const PathLimits limits = WithinAxes(path, MillHead{}, OnlyWeak(0, 1e12, 1e15, 1e-3), {},
                                        {.speed = 1e3, .acceleration = 1e3});
   EXPECT_TRUE(std::isinf(limits.jerk));
+  // Nor where the head turns a little, and some places tell it.
+  const PathPiece little = PathPiece::Line({{0, 0, 0}, 0.0, 1.0}, {{100, 0, 0}, 0.01, 1.0});
+  const PathLimits slow = WithinAxes(little, GantryHead{}, OnlyWeak(0, 10.0, 1e15, 1e-3), {},
+                                     {.speed = 1e3, .acceleration = 1e3});
+  EXPECT_LT(slow.speed, 10.5);
+  EXPECT_TRUE(std::isinf(slow.jerk));
 }
 
 // A head that turns by one radian for each millimetre throws the column as any other rate does.

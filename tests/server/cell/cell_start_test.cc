@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <spdlog/spdlog.h>
+#include <sys/types.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -31,6 +34,7 @@ namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
 
@@ -99,6 +103,34 @@ class CellStartTest : public testing::Test {
     EXPECT_TRUE(status.ok()) << status.error_message();
     return told.status();
   }
+  // As whoever watches the machine hears it first.
+  static v1::MachineStatus WatchedStatusOf(const Cell& cell, const std::string& machine) {
+    grpc::ClientContext context;
+    BePatient(context);
+    v1::WatchMachineRequest request;
+    request.set_name("machines/" + machine);
+    const auto stub = v1::MachineService::NewStub(ChannelTo(cell));
+    const auto watch = stub->WatchMachine(&context, request);
+    v1::WatchMachineResponse first;
+    EXPECT_TRUE(watch->Read(&first));
+    context.TryCancel();
+    static_cast<void>(watch->Finish());
+    return first.status();
+  }
+  // What it warns of from its start to its end, as far as it says this.
+  std::vector<std::string> Warnings(const Config& config, const std::string& of) const {
+    const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+    EXPECT_TRUE(StartLog("cell-warns", "warn", "text", folder_ + "/log"));
+    EXPECT_TRUE(Cell::Start(config));
+    spdlog::drop("cell-warns");
+    spdlog::set_default_logger(before);
+    std::vector<std::string> told;
+    std::ifstream log(folder_ + "/log");
+    for (std::string line; std::getline(log, line);) {
+      if (line.find(of) != std::string::npos) told.push_back(line.substr(line.find("] ") + 2));
+    }
+    return told;
+  }
   // In place of rmlcell-worker, whether it is to work or to be a host.
   std::string Program(const std::string& what) const {
     const std::string path = folder_ + "/program";
@@ -119,10 +151,8 @@ TEST_F(CellStartTest, TwoServersShareNoAddress) {
   const std::vector<std::string> addresses = (*cell)->grpc_addresses();
   ASSERT_EQ(addresses.size(), 2U);
   EXPECT_EQ(addresses[0], first.listen_grpc[0]);
-  EXPECT_THAT(addresses[1], StartsWith("127.0.0.1:"));
-  EXPECT_NE(addresses[1], "127.0.0.1:0");
-  EXPECT_THAT((*cell)->web_address(), StartsWith("127.0.0.1:"));
-  EXPECT_NE((*cell)->web_address(), "127.0.0.1:0");
+  EXPECT_THAT(addresses[1], MatchesRegex("127\\.0\\.0\\.1:[1-9][0-9]*"));
+  EXPECT_THAT((*cell)->web_address(), MatchesRegex("127\\.0\\.0\\.1:[1-9][0-9]*"));
 
   Config second = Alone("second");
   second.listen_grpc = {addresses[1]};
@@ -158,8 +188,16 @@ TEST_F(CellStartTest, TheWebHasAnAddressOfIpv6) {
   config.listen_web = "[::1]:0";
   const auto cell = Cell::Start(config);
   ASSERT_TRUE(cell) << cell.error().detail;
-  EXPECT_THAT((*cell)->web_address(), StartsWith("[::1]:"));
-  EXPECT_NE((*cell)->web_address(), "[::1]:0");
+  EXPECT_THAT((*cell)->web_address(), MatchesRegex("\\[::1\\]:[1-9][0-9]*"));
+}
+
+// Brackets belong to an address as a pair.
+TEST_F(CellStartTest, AnAddressInHalfABracketIsNone) {
+  Config config = Alone("half");
+  config.listen_web = "[127.0.0.12:0";
+  const Error refused = Refusal(config);
+  EXPECT_EQ(refused.code, ErrorCode::kCellConfiguration);
+  EXPECT_EQ(refused.detail, "web address [127.0.0.12:0 is no literal address with a port");
 }
 
 TEST_F(CellStartTest, AMachineThatThereCannotBeStopsTheStart) {
@@ -168,6 +206,8 @@ TEST_F(CellStartTest, AMachineThatThereCannotBeStopsTheStart) {
   const Error refused = Refusal(config);
   EXPECT_EQ(refused.code, ErrorCode::kCellConfiguration);
   EXPECT_THAT(refused.detail, StartsWith("machine mill-9: "));
+  config.machines = {{"", "rml1", "srm-20", "Nameless"}};  // what the store refuses it says itself
+  EXPECT_EQ(Refusal(config).code, ErrorCode::kCellInvalidArgument);
 }
 
 TEST_F(CellStartTest, WithoutItsSecretOfHostsThereIsNoServer) {
@@ -204,13 +244,15 @@ TEST_F(CellStartTest, NeedsItsProgramForWhatWasThereAndForWorkers) {
   EXPECT_TRUE(Cell::Start(config));
 }
 
-// More machines than may live are no reason to serve none.
+// More machines than may live are no reason to serve none; the first of them that does not is told.
 TEST_F(CellStartTest, StartsThoughNotAllOfItsMachinesMayLive) {
   Config config = Alone("full");
+  config.machines.push_back({"mill-3", "rml1", "srm-20", "A third"});
   config.machines_hosts_max = 1;
   PutLeases(config, false);
-  const auto cell = Cell::Start(config);
-  EXPECT_TRUE(cell) << cell.error().detail;
+  const std::vector<std::string> told = Warnings(config, " does not live: ");
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_THAT(told.front(), StartsWith("mill-2 does not live: "));
 }
 
 // machines.hosts: all of them live, or those whose record says so; what the record says counts. Who
@@ -235,8 +277,9 @@ TEST_F(CellStartTest, AMachineLivesWhereItsRecordOrTheConfigurationSaysSo) {
     const auto cell = Cell::Start(config);
     ASSERT_TRUE(cell) << cell.error().detail;
     for (const auto& [machine, lives] : {std::pair("mill-1", all), std::pair("mill-2", !all)}) {
-      EXPECT_EQ(StatusOf(**cell, machine).state() == v1::MACHINE_STATE_STARTING, lives)
-          << machine << all;
+      for (const v1::MachineStatus& told :
+           {StatusOf(**cell, machine), WatchedStatusOf(**cell, machine)})
+        EXPECT_EQ(told.state() == v1::MACHINE_STATE_STARTING, lives) << machine << all;
     }
   }
 }
@@ -265,21 +308,11 @@ TEST_F(CellStartTest, TheLogSaysWhereTheStoreCounts) {
   config.machines = {{"mill-1", "rml1", "mdx-20", "A mill"},
                      {"mill-2", "rml1", "srm-20", "Another title"},
                      {"any", "optimo", "", "Any"}};
-  const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
-  EXPECT_TRUE(StartLog("cell-kept", "warn", "text", folder_ + "/log"));
-  EXPECT_TRUE(Cell::Start(config));
-  spdlog::drop("cell-kept");
-  spdlog::set_default_logger(before);
-  std::vector<std::string> told;
-  std::ifstream log(folder_ + "/log");
-  for (std::string line; std::getline(log, line);) {
-    if (line.ends_with(": the store counts")) told.push_back(line.substr(line.find("machine ")));
-  }
   const std::vector<std::string> wanted = {
       "machine mill-1 is in the store as rml1 srm-20, and the configuration says rml1 mdx-20: "
       "the store counts",
       "machine any is in the store as rml1 , and the configuration says optimo : the store counts"};
-  EXPECT_EQ(told, wanted);
+  EXPECT_EQ(Warnings(config, ": the store counts"), wanted);
 }
 
 // grpc.health.v1: whoever watches over servers hears that this one serves.
@@ -354,6 +387,44 @@ TEST_F(CellStartTest, HasTheWorkersThatAreConfigured) {
   }
 }
 
+// Nothing that works for it goes on behind it.
+TEST_F(CellStartTest, ItsWorkersEndWithIt) {
+  Config config = Alone("worker");
+  const std::string lives = config.state_directory + ".lives";
+  config.workers_program = Program("echo $$ > " + lives + "\nexec sleep 60");
+  config.workers_count = 1;
+  config.workers_paced = 0;
+  const auto cell = Cell::Start(config);
+  ASSERT_TRUE(cell) << cell.error().detail;
+  pid_t worker = 0;
+  ASSERT_TRUE(storage::Eventually([&] {
+    std::ifstream file(lives);
+    return static_cast<bool>(file >> worker);
+  }));
+  EXPECT_EQ(::kill(worker, 0), 0);
+  (*cell)->Stop();
+  EXPECT_EQ(::kill(worker, 0), -1);
+  EXPECT_EQ(errno, ESRCH);
+}
+
+// shutdown.timeout_s: a call that goes on keeps nobody from stopping; it is ended.
+TEST_F(CellStartTest, StopsThoughACallGoesOn) {
+  Config config = Alone("goes-on");
+  config.shutdown_timeout_s = 0.1;
+  const auto cell = Cell::Start(config);
+  ASSERT_TRUE(cell) << cell.error().detail;
+  grpc::ClientContext context;
+  BePatient(context);
+  const auto stub = grpc::health::v1::Health::NewStub(ChannelTo(**cell));
+  const auto watch = stub->Watch(&context, grpc::health::v1::HealthCheckRequest());
+  grpc::health::v1::HealthCheckResponse told;
+  ASSERT_TRUE(watch->Read(&told));
+  (*cell)->Stop();
+  while (watch->Read(&told)) {
+  }
+  EXPECT_FALSE(watch->Finish().ok());
+}
+
 // A host that ends again and again is not begun for ever: whoever looks at its machine reads why.
 TEST_F(CellStartTest, AMachineWhoseHostAlwaysEndsIsOff) {
   Config config = Alone("ends");
@@ -413,13 +484,17 @@ TEST_F(CellStartTest, LeavesNothingBehind) {
   Config config = Alone("one");
   const std::string socket = folder_ + "/one.sock";
   config.listen_grpc = {"unix:" + socket};
+  config.listen_web = "127.0.0.1:0";
+  config.machines_hosts = "all";  // and are looked at all the time
   const auto cell = Cell::Start(config);
   ASSERT_TRUE(cell) << cell.error().detail;
   EXPECT_TRUE(std::filesystem::is_socket(socket));
   EXPECT_TRUE(std::filesystem::exists(config.state_directory + "/private"));
+  EXPECT_NE((*cell)->web_address(), "");
   (*cell)->Stop();
   EXPECT_FALSE(std::filesystem::exists(socket));
   EXPECT_FALSE(std::filesystem::exists(config.state_directory + "/private"));
+  EXPECT_EQ((*cell)->web_address(), "");
   // The store is free, and who stops once more stops nothing of the next one.
   const auto next = Cell::Start(config);
   ASSERT_TRUE(next) << next.error().detail;

@@ -1,5 +1,6 @@
 #include "server/cell/socket_listener.h"
 
+#include <fcntl.h>
 #include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -43,12 +45,18 @@ sockaddr_un NameOf(const std::string& path) {
   return name;
 }
 
-// A client that has said its first words.
-int Connected(const std::string& path) {
+int NewClient() { return ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0); }
+
+// Says its first words.
+void Connect(int client, const std::string& path) {
   const sockaddr_un name = NameOf(path);
-  const int client = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   EXPECT_EQ(::connect(client, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
   EXPECT_EQ(::send(client, kClientPreface.data(), kClientPreface.size(), MSG_NOSIGNAL), 33);
+}
+
+int Connected(const std::string& path) {
+  const int client = NewClient();
+  Connect(client, path);
   return client;
 }
 
@@ -66,10 +74,10 @@ std::unique_ptr<grpc::Server> ServerOf(grpc::CallbackGenericService& service) {
   return builder.BuildAndStart();
 }
 
-// True as soon as something stands in the file, which is not opened for that.
-bool IsWritten(const std::string& file) {
+// True as soon as more stands in the file, which is not opened for that.
+bool IsLongerThan(std::uintmax_t bytes, const std::string& file) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (std::filesystem::file_size(file) == 0) {
+  while (std::filesystem::file_size(file) <= bytes) {
     if (std::chrono::steady_clock::now() > until) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -84,6 +92,22 @@ std::vector<std::string> MessagesIn(const std::string& file) {
     messages.push_back(line.substr(line.rfind("] ") + 2));
   return messages;
 }
+
+// As long as it lives this process has no standard input: what is opened next has number 0.
+class NoInput {
+ public:
+  NoInput() : before_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3)) { ::close(STDIN_FILENO); }
+  ~NoInput() {
+    if (before_ < 0) return;
+    ::dup2(before_, STDIN_FILENO);
+    ::close(before_);
+  }
+  NoInput(const NoInput&) = delete;
+  NoInput& operator=(const NoInput&) = delete;
+
+ private:
+  const int before_;
+};
 
 class SocketListenerTest : public testing::Test {
  protected:
@@ -135,6 +159,42 @@ TEST_F(SocketListenerTest, SaysWhyItCannotBeThere) {
   EXPECT_FALSE(std::filesystem::exists(folder_ + "/cell.sock"));
 }
 
+// A service may be started without standard input.
+TEST_F(SocketListenerTest, ASocketMayHaveNumber0) {
+  const std::string path = folder_ + "/cell.sock";
+  const auto first = SocketListener::Make("unix://" + path, users_);
+  ASSERT_TRUE(first) << first.error().detail;
+  std::string of_a_living_one;
+  std::string of_none;
+  {
+    const NoInput none;
+    of_a_living_one = Refusal(path);
+    of_none = Refusal(folder_ + "/another.sock");
+  }
+  EXPECT_EQ(of_a_living_one, "another server listens there");
+  EXPECT_EQ(of_none, "");
+}
+
+TEST_F(SocketListenerTest, AClientMayHaveNumber0) {
+  grpc::CallbackGenericService service;
+  const std::unique_ptr<grpc::Server> server = ServerOf(service);
+  ASSERT_NE(server, nullptr);
+  const std::string path = folder_ + "/cell.sock";
+  auto made = SocketListener::Make("unix://" + path, users_);
+  ASSERT_TRUE(made) << made.error().detail;
+  std::unique_ptr<SocketListener> listener = *std::move(made);
+  const int client = Connected(path);
+  {
+    const NoInput none;
+    listener->Serve(*server);
+    EXPECT_TRUE(IsAnswered(client));
+    listener.reset();
+    ::close(client);
+    server->Shutdown(std::chrono::system_clock::now());
+    server->Wait();
+  }
+}
+
 // What another server has put there meanwhile stays.
 TEST_F(SocketListenerTest, TakesItsOwnFileAway) {
   const std::string path = folder_ + "/cell.sock";
@@ -167,7 +227,7 @@ TEST_F(SocketListenerTest, TakesNothingThatIsOfUse) {
 TEST_F(SocketListenerTest, ReplacesTheSocketOfADeadServer) {
   const std::string path = folder_ + "/cell.sock";
   const sockaddr_un name = NameOf(path);
-  const int dead = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int dead = NewClient();
   EXPECT_EQ(::bind(dead, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
   ::close(dead);
   ASSERT_TRUE(std::filesystem::is_socket(path));
@@ -199,8 +259,8 @@ TEST_F(SocketListenerTest, KnowsWhoComes) {
   server->Wait();
 }
 
-// Who comes while no descriptor is free waits, and the log says so; there is one again, and it is
-// served.
+// Who comes while no descriptor is free waits, and the log says so, each time; there is one again,
+// and it is served.
 TEST_F(SocketListenerTest, AClientWaitsForADescriptor) {
   const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
   ASSERT_TRUE(StartLog("cell-waits", "info", "text", folder_ + "/log"));
@@ -215,18 +275,27 @@ TEST_F(SocketListenerTest, AClientWaitsForADescriptor) {
     {
       const NoDescriptors none;
       listener->Serve(*server);
-      EXPECT_TRUE(IsWritten(folder_ + "/log"));
+      EXPECT_TRUE(IsLongerThan(0, folder_ + "/log"));
     }
     EXPECT_TRUE(IsAnswered(client));
+    const std::uintmax_t once = std::filesystem::file_size(folder_ + "/log");
+    const int next = NewClient();
+    {
+      const NoDescriptors none;  // but for the one that is kept for whoever comes next
+      Connect(next, path);
+      EXPECT_TRUE(IsLongerThan(once, folder_ + "/log"));
+    }
+    EXPECT_TRUE(IsAnswered(next));
     listener.reset();
     ::close(client);
+    ::close(next);
     server->Shutdown(std::chrono::system_clock::now());
     server->Wait();
   }
   spdlog::drop("cell-waits");
   spdlog::set_default_logger(before);
-  const std::vector<std::string> told = {"connections to " + path +
-                                         " wait: " + std::strerror(EMFILE)};
+  const std::string waits = "connections to " + path + " wait: " + std::strerror(EMFILE);
+  const std::vector<std::string> told = {waits, waits};
   EXPECT_EQ(MessagesIn(folder_ + "/log"), told);
 }
 

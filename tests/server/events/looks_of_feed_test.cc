@@ -1,8 +1,10 @@
 // When the feed looks at the log again, and of which jobs it keeps the events.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 
+#include "server/base/steady_clock.h"
 #include "server/events/event_feed.h"
 #include "tests/server/events/fake_log.h"
 #include "tests/server/server_bed.h"
@@ -84,6 +86,40 @@ TEST(LooksOfFeed, APositionThatWasForgottenIsANewOne) {
   ASSERT_TRUE(steady.GoneRound());  // the feed is done with the first one, and waits
   steady.Advance(std::chrono::milliseconds(5));
   EXPECT_TRUE(told());
+}
+
+// The log is asked once for what a look finds, unless it may hold more.
+TEST(LooksOfFeed, ALookThatBroughtLittleIsTheLastOne) {
+  FakeLog log;
+  EventFeed feed(log, {.poll_interval = kWhenHinted});
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
+  const auto watch = feed.Subscribe(storage::JobName(1), [] {});
+  log.Write(1, 3);
+  ASSERT_TRUE(Eventually([&] { return feed.position() == 3; }));
+  feed.Publish(storage::JobName(1), "told when the look is over");
+  ASSERT_TRUE(Eventually([&] { return bool(feed.LatestAfter(storage::JobName(1), 0)); }));
+  EXPECT_EQ(log.reads(), 2);
+}
+
+// With nothing to tell it sleeps until its next look, which is in a year: it looks at its clock
+// when it begins, when it goes to sleep, when it wakes, behind the first look, and when it sleeps
+// again.
+TEST(LooksOfFeed, WithNothingToTellItSleeps) {
+  FakeLog log;
+  std::atomic<int> looks_at_clock = 0;
+  const auto counted = [&looks_at_clock] {
+    ++looks_at_clock;
+    return SteadyTime();
+  };
+  EventFeed feed(log, {.clock = counted, .poll_interval = kWhenHinted});
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
+  FakeLog log_of_another;
+  EventFeed another(log_of_another, {.poll_interval = kWhenHinted});
+  for (int job = 1; job <= 10; ++job) {  // meanwhile
+    another.Publish(storage::JobName(job), "here");
+    ASSERT_TRUE(Eventually([&] { return bool(another.LatestAfter(storage::JobName(job), 0)); }));
+  }
+  EXPECT_LE(looks_at_clock, 5);
 }
 
 }  // namespace

@@ -194,6 +194,39 @@ TEST_F(AppliedInputs, SayThatTheQueueHasControl) {
   EXPECT_FALSE(host_->StatusAt(now_).has_control());
 }
 
+// LIVE-4.05: of a run that is over the queue gets no control, though control runs out in the same
+// moment.
+TEST_F(AppliedInputs, SayNothingOfTheQueueBehindTheRun) {
+  const auto begin = [this] {
+    Make();
+    host_->Begin({}, now_);
+    ASSERT_FALSE(Do(JobOf("PA;PA;VS5;PU1000,0;", "there.rml")).has_refusal());
+  };
+  begin();
+  int steps = 0;
+  for (; State() != v1::MACHINE_STATE_IDLE && steps < 1'200; ++steps) Pass(50ms, 50ms);
+  ASSERT_GT(steps, 21);
+  begin();
+  Pass(50ms * (steps - 21), 50ms);
+  v1::HostOrder take;
+  take.mutable_acquire_control()->set_take_over(true);
+  take.mutable_acquire_control()->set_reason("a look");
+  take.mutable_acquire_control()->set_on_loss(v1::ControlLease::ON_LOSS_GO_ON);
+  // Until the middle of the last step.
+  take.mutable_acquire_control()->mutable_ttl()->set_seconds(1);
+  take.mutable_acquire_control()->mutable_ttl()->set_nanos(25'000'000);
+  ASSERT_FALSE(Do(take).has_refusal());
+  Pass(50ms * 20, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_RUNNING);
+  ASSERT_TRUE(host_->StatusAt(now_).has_control());
+  Of(v1::JournalEntry::kApplied);
+  Pass(50ms, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const std::vector<v1::JournalEntry> applied = Of(v1::JournalEntry::kApplied);
+  ASSERT_EQ(applied.size(), 1U);
+  EXPECT_EQ(applied[0].applied().input().control().kind(), v1::ControlChanged::KIND_EXPIRED);
+}
+
 // LIVE-3.11: how fast its time goes is kept for the next host, where it is not that of the clock.
 TEST_F(AppliedInputs, TheFactorOfItsTimeIsKept) {
   MakeAndTake();
@@ -405,6 +438,53 @@ TEST_F(AppliedInputs, WhatIsMovedByHandLeavesACleanMark) {
   host_->EndRun(now_);
   EXPECT_THAT(Of(v1::JournalEntry::kRunOver), IsEmpty());
   EXPECT_TRUE(host_->run_open());
+}
+
+// LIVE-3.23: what begins is marked at once, though something else comes to it before it is written.
+TEST_F(AppliedInputs, WhatBeginsIsMarkedAtOnce) {
+  MakeAndTake();
+  Mark();
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  ASSERT_FALSE(Do(Override(90.0)).has_refusal());
+  const std::vector<v1::JournalEntry> told = host_->TakeEntries(now_);
+  ASSERT_FALSE(told.empty());
+  ASSERT_TRUE(told.back().has_mark());
+  EXPECT_FALSE(told.back().mark().clean());
+}
+
+// LIVE-3.23, LIVE-3.26: what happens on the way is told with the next tenth of a second.
+TEST_F(AppliedInputs, WhatHappensOnTheWayWaitsATenthOfASecond) {
+  MakeAndTake();
+  ASSERT_FALSE(Do(Start()).has_refusal());
+  Pass(1s);
+  Mark();
+  ASSERT_FALSE(Do(Override(90.0)).has_refusal());
+  Pass(90ms);
+  EXPECT_THAT(host_->TakeEntries(now_), IsEmpty());
+  Pass(10ms);
+  EXPECT_EQ(host_->TakeEntries(now_).size(), 2U);  // and a mark
+}
+
+// LIVE-3.23: a machine that was marked on its way is marked where it came to rest.
+TEST_F(AppliedInputs, WhatCameToRestIsMarkedThere) {
+  MakeAndTake();
+  v1::HostOrder key;
+  key.mutable_panel_key()->set_key("X+");
+  key.mutable_panel_key()->set_control_token(token_);
+  for (const auto action : {v1::KEY_ACTION_PRESS, v1::KEY_ACTION_RELEASE}) {
+    key.mutable_panel_key()->set_action(action);
+    key.mutable_panel_key()->set_sequence(key.panel_key().sequence() + 1);
+    ASSERT_FALSE(Do(key).has_refusal());
+    if (action == v1::KEY_ACTION_PRESS) Pass(100ms);
+  }
+  const std::string on_its_way = Mark().state();
+  ASSERT_EQ(State(), v1::MACHINE_STATE_STOPPING);
+  Pass(1s);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  const std::vector<v1::JournalEntry> told = host_->TakeEntries(now_);
+  ASSERT_FALSE(told.empty());
+  EXPECT_TRUE(told.back().mark().clean());
+  EXPECT_NE(told.back().mark().state(), on_its_way);
 }
 
 // What a machine has is told no more; what it begins with did not happen now.

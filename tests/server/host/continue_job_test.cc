@@ -108,6 +108,7 @@ TEST_F(ContinueJobTest, ANewJobGoesOnWhereTheOldOneWas) {
   const v1::HostOrderAnswer begun = Do(Continue(token));
   ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
   EXPECT_EQ(begun.status().run().job(), "jobs/18");
+  EXPECT_EQ(begun.status().run().source(), v1::START_SOURCE_QUEUE);
   EXPECT_EQ(begun.status().run().phase(), v1::RUN_PHASE_APPROACH);
   Until(v1::MACHINE_STATE_HELD);
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
@@ -121,6 +122,15 @@ TEST_F(ContinueJobTest, ANewJobGoesOnWhereTheOldOneWas) {
     EXPECT_EQ(entry.run_over().outcome().kind(), v1::Outcome::KIND_COMPLETED);
   }
   EXPECT_TRUE(over);
+  // Its recording begins where no run is open any more.
+  v1::HostOrder order;
+  order.mutable_recording()->set_job("jobs/18");
+  const auto recorded = recording::ReadFile(Do(order).recording().chunk());
+  ASSERT_TRUE(recorded) << recorded.error().detail;
+  const v1::MachineMark& first = recorded->entries.front().mark();
+  EXPECT_TRUE(first.clean());
+  EXPECT_EQ(first.job(), "");
+  EXPECT_FALSE(first.has_base());
 }
 
 // LIVE-6.07: where the part is known the way is looked at against what the run had cut of it.
@@ -272,6 +282,10 @@ TEST_F(ContinueJobTest, WhatIsRefusedLeavesTheDecisionOpen) {
   EXPECT_EQ(Do(Continue("another")).refusal().code(), "CELL-E9428");
   EXPECT_THAT(Do(Continue(token, "jobs/16")).refusal().message(), HasSubstr("jobs/16"));
   EXPECT_EQ(Do(Continue(token + " ", "jobs/17", "PU0,0;")).refusal().code(), "CELL-E9428");
+  v1::HostOrder empty = Continue(token);
+  empty.mutable_continue_job()->mutable_start()->set_request_id("empty");
+  empty.mutable_continue_job()->mutable_assignment()->clear_programs();
+  EXPECT_EQ(Do(empty).refusal().code(), "CELL-E9003");
   v1::HostOrder unseen = Continue(token);
   unseen.mutable_continue_job()->mutable_start()->set_request_id("unseen");
   unseen.mutable_continue_job()->mutable_start()->clear_confirmations();

@@ -323,6 +323,14 @@ TEST(DeskLimits, OfMarksThatStay) {
   EXPECT_TRUE(is_old(0));
   EXPECT_TRUE(is_old(199));
   EXPECT_FALSE(is_old(200));
+  // From one that stays on they are counted anew.
+  std::vector<EntryKind> kinds(200, EntryKind::kOther);
+  kinds.push_back(EntryKind::kMark);
+  kinds.resize(kinds.size() + 199, EntryKind::kOther);
+  for (int mark = 0; mark < 2; ++mark) kinds.push_back(EntryKind::kMark);
+  const std::vector<bool> old = OldMarks(kinds);
+  EXPECT_FALSE(old[200]);
+  EXPECT_TRUE(old[400]);
 }
 
 // A part ends with the first mark by which it has a mebibyte.

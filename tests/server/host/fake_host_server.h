@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rmlcell/v1/host.grpc.pb.h"
@@ -38,6 +39,7 @@ class FakeHostServer final : public v1::HostService::Service {
       told_.push_back(request);
       changed_.notify_all();
       if (!refusal_.ok()) return refusal_;
+      if (!next_refusal_.ok()) return std::exchange(next_refusal_, grpc::Status::OK);
       v1::HostResponse response;
       *response.mutable_welcome() = welcome_;
       stream->Write(response);
@@ -74,6 +76,11 @@ class FakeHostServer final : public v1::HostService::Service {
   void Refuse(const grpc::Status& refusal) {
     const std::lock_guard lock(mutex_);
     refusal_ = refusal;
+  }
+  // The next one that comes; who comes behind it is welcome.
+  void RefuseOnce(const grpc::Status& refusal) {
+    const std::lock_guard lock(mutex_);
+    next_refusal_ = refusal;
   }
   void Tell(const v1::HostResponse& response) {
     std::unique_lock lock(mutex_);
@@ -133,6 +140,7 @@ class FakeHostServer final : public v1::HostService::Service {
   std::vector<v1::HostRequest> told_;
   v1::HostWelcome welcome_ = OfFence7();
   grpc::Status refusal_{};  // guarded by mutex_, as all of these
+  grpc::Status next_refusal_{};
   grpc::ServerReaderWriter<v1::HostResponse, v1::HostRequest>* stream_ = nullptr;
   grpc::ServerContext* context_ = nullptr;
   int ended_ = 0;

@@ -106,6 +106,41 @@ TEST_F(HandWords, ANumberThatIsNotTheNextIsNamed) {
   EXPECT_TRUE(Do(order).has_key());
 }
 
+// LIVE-7.04, LIVE-7.10: a press that came behind its release does nothing, and is told nothing of
+// what the control said to another key.
+TEST_F(HandWords, APressBehindItsReleaseSaysNothing) {
+  OpenHandbox();
+  const auto press = [this](const std::string& key, v1::KeyAction action, std::int64_t number) {
+    v1::HostOrder order = KeyOf(session_, key, action);
+    order.mutable_key()->set_sequence(number);
+    const v1::HostOrderAnswer answer = Do(order);
+    EXPECT_TRUE(answer.has_key()) << number << answer.refusal().message();
+    return answer.key();
+  };
+  press("X+", v1::KEY_ACTION_RELEASE, 3);
+  EXPECT_TRUE(press("REC", v1::KEY_ACTION_TAP, 1).has_message());  // in REMOTE
+  EXPECT_FALSE(press("X+", v1::KEY_ACTION_PRESS, 2).has_message());
+}
+
+// LIVE-7.09: where the tip was, in each direction.
+TEST_F(HandWords, WhatIsTaughtSaysWhereItsTipWas) {
+  MakeOptimo();
+  const v1::HostOrderAnswer begun =
+      Do(JobOf("COORD ABSOL\nPATH PTP\nMOVE (100.,2000.,-400.,0.,0.)\n"));
+  ASSERT_FALSE(begun.has_refusal()) << begun.refusal().message();
+  for (int second = 0; second < 600 && State() != v1::MACHINE_STATE_IDLE; ++second) Pass(1s, 50ms);
+  ASSERT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  Control(v1::ControlLease::ON_LOSS_GO_ON);
+  v1::HostOrder open;
+  open.mutable_create_session()->set_control_token(token_);
+  const v1::Point tip =
+      Taught(Do(open).session().name(), "MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT REC")
+          .taught()
+          .tip();
+  EXPECT_EQ(tip.SerializeAsString(), host_->StatusAt(now_).tip().SerializeAsString());
+  for (const double coordinate : {tip.x(), tip.y(), tip.z()}) EXPECT_NE(coordinate, 0.0);
+}
+
 // LIVE-7.09: where the machine stood when a step was taught, when, and what was in force.
 TEST_F(HandWords, WhatIsTaughtSaysWhereTheMachineStood) {
   OpenHandbox();

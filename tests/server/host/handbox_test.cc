@@ -76,6 +76,7 @@ TEST_F(HandboxOverTheLine, ASessionIsOfWhoHasControl) {
   Do(release);
   EXPECT_EQ(host_->Handbox()->holder(), "");
   Control();
+  EXPECT_EQ(host_->Handbox()->holder(), "");
   EXPECT_EQ(Do(Key("MODE_LEFT")).refusal().code(), "CELL-E9004");
   Open();
   EXPECT_EQ(session_, "machines/optimo-1/handboxSessions/2");
@@ -119,12 +120,28 @@ TEST_F(HandboxOverTheLine, StartBeginsTheSelectedProgram) {
   memory.mutable_programs(0)->set_content(made.object);
   host_->Change(memory, now_);
   Press("MODE_LEFT MODE_LEFT MODE_LEFT MODE_LEFT JOB 1 2 ENT MODE_RIGHT MODE_RIGHT");
+  static_cast<void>(host_->TakeEntries(now_, true));
   const v1::PressKeyResponse begun = Press("START");
   EXPECT_FALSE(begun.has_message()) << begun.message().code();
   EXPECT_EQ(State(), v1::MACHINE_STATE_RUNNING);
   EXPECT_EQ(host_->StatusAt(now_).run().program(), 12);
+  // LIVE-3.23: marked at once, however soon a crash comes.
+  const std::vector<v1::JournalEntry> told = host_->TakeEntries(now_);
+  ASSERT_FALSE(told.empty());
+  EXPECT_TRUE(told.back().has_mark());
+  EXPECT_FALSE(told.back().mark().clean());
   Pass(3s);
   EXPECT_EQ(State(), v1::MACHINE_STATE_IDLE);
+  // LIVE-3.40: a recording of its own, from that key on.
+  static_cast<void>(host_->TakeEntries(now_, true));
+  v1::HostOrder order;
+  order.mutable_recording();
+  const auto recording = recording::ReadFile(Do(order).recording().chunk());
+  ASSERT_TRUE(recording) << recording.error().detail;
+  const auto played = recording::Replay(*recording, {});
+  ASSERT_TRUE(played) << played.error().detail;
+  EXPECT_FALSE(played->difference) << played->difference->field;
+  EXPECT_EQ(played->inputs, 1);
 }
 
 // LIVE-9.06, OPT-4.34: the override has ten steps, from afar as well; a mill is set to any.
@@ -193,6 +210,12 @@ TEST_F(HandboxOverTheLine, AJogKeyIsHeld) {
   ASSERT_TRUE(played) << played.error().detail;
   EXPECT_FALSE(played->difference) << played->difference->field;
   EXPECT_EQ(played->inputs, 6);  // four for the mode, the key, that it was let go
+  v1::PressedKey newest;
+  for (const v1::JournalEntry& entry : recording->entries) {
+    if (entry.has_applied()) newest = entry.applied().input().key();
+  }
+  EXPECT_EQ(newest.key(), "HANDBOX X+");
+  EXPECT_EQ(newest.action(), v1::KEY_ACTION_RELEASE);
 }
 
 // LIVE-7.02, LIVE-7.06: a key that is down ends with its session; the next one counts its keys and

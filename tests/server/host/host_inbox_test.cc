@@ -5,10 +5,13 @@
 #include <time.h>
 
 #include <chrono>
+#include <functional>
 #include <future>
 #include <thread>
+#include <vector>
 
 #include "server/host/background.h"
+#include "tests/storage/quiet_process.h"
 
 namespace rmlcell::server {
 namespace {
@@ -80,6 +83,25 @@ TEST(HostInbox, WakesForEachThatComes) {
   EXPECT_TRUE(ComesAtOnce(inbox, false));
   std::jthread later([&] { inbox.Hear(HeardStop(2), 2s); });
   EXPECT_TRUE(ComesAtOnce(inbox, true));
+}
+
+// Whoever waits already is woken by whatever comes.
+TEST(HostInbox, WakesWhoWaits) {
+  const std::vector<std::function<void(HostInbox&)>> all_that_comes = {
+      [](HostInbox& inbox) { inbox.Hear(HeardStop(1), 1s); },
+      [](HostInbox& inbox) { inbox.Later([] {}); },
+      [](HostInbox& inbox) {
+        inbox.HaveJoined(Error{ErrorCode::kCellNotLive, {}, {}});
+      },
+      [](HostInbox& inbox) { inbox.LineIsGone(); }};
+  for (const auto& comes : all_that_comes) {
+    HostInbox inbox;
+    const std::jthread later([&] {
+      EXPECT_TRUE(ComesToRest());  // it waits
+      comes(inbox);
+    });
+    EXPECT_TRUE(ComesAtOnce(inbox, true));
+  }
 }
 
 TEST(Background, DoesOneThingAtATime) {

@@ -99,6 +99,7 @@ TEST_F(HostJobsTest, WhatIsToldOfARunHasItsTime) {
   ASSERT_NE(over, entries.end());
   EXPECT_GT(begun->virtual_time_ns(), 2'000'000'000);
   EXPECT_EQ(begun->run_time_ns(), 0);
+  EXPECT_EQ(begun->run_begun().job(), "jobs/17");
   EXPECT_GT(over->run_time_ns(), 0);
   EXPECT_EQ(over->run_time_ns(), over->virtual_time_ns() - begun->virtual_time_ns());
 }
@@ -423,6 +424,9 @@ TEST_F(HostJobsTest, AnOrderlyEndCutsTheRunOff) {
   EXPECT_FALSE(mark.clean());
   EXPECT_FALSE(mark.has_run_time_ns()) << "its end is told already";
   EXPECT_EQ(mark.job(), "jobs/17");
+  EXPECT_EQ(mark.base().program(), 5);
+  EXPECT_EQ(mark.base().place().SerializeAsString(),
+            entries.front().run_over().outcome().place().SerializeAsString());
 }
 
 // LIVE-4.05, LIVE-5.09: and it is nobody's any more whose end was told: the queue gets no control

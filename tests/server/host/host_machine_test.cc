@@ -53,6 +53,8 @@ TEST_F(HostMachineTest, TheStatusTellsAllOfIt) {
   EXPECT_EQ(status.run().phase(), v1::RUN_PHASE_PROGRAM);
   EXPECT_EQ(status.run().run_time_ns(), 30'000'000'000);
   EXPECT_EQ(status.run().source(), v1::START_SOURCE_CONSOLE);
+  EXPECT_NE(status.run().instruction(), "");
+  EXPECT_FALSE(status.run().waits());
   EXPECT_EQ(status.hold_reason(), v1::HOLD_REASON_UNSPECIFIED);
   EXPECT_EQ(status.control().holder(), "anna");
   ASSERT_EQ(status.axes_size(), 4);
@@ -245,6 +247,9 @@ TEST_F(HostMachineTest, MovingItMarksEverySecond) {
   EXPECT_TRUE(mark_.has_run_time_ns());
   EXPECT_EQ(mark_.place().program(), 5);
   EXPECT_EQ(mark_.state_sha256().size(), 32U);
+  EXPECT_EQ(mark_.fence(), 7);
+  EXPECT_EQ(mark_.sequence(), sequence_);
+  EXPECT_EQ(mark_.virtual_time_ns(), host_->StatusAt(now_).virtual_time_ns());
 }
 
 // LIVE-3.26: whatever happens while it moves, what was told goes to the disk ten times a second,

@@ -218,6 +218,11 @@ TEST_F(JournalBoundsTest, OldMarksGoWhereThatIsEnough) {
   EXPECT_FALSE(journal->Write({EventOf(3, 7, kMebibyte + 501)}));
   EXPECT_EQ(journal->bytes(), kMost);
   EXPECT_EQ(std::filesystem::file_size(path_), static_cast<std::uintmax_t>(kMost));
+  {
+    const SmallFiles disk(0);
+    EXPECT_THAT(journal->Write({EventOf(3, 7, kMebibyte + 500)}).error().detail,
+                HasSubstr(path_ + ".new"));
+  }
   EXPECT_TRUE(journal->Write({EventOf(3, 8, kMebibyte + 500)}));
   EXPECT_EQ(journal->bytes(), kMost);
   EXPECT_THAT(Numbers(), ElementsAre(2, 4, 5, 6, 8));
@@ -313,6 +318,22 @@ TEST_F(JournalBoundsTest, IsReadToItsEndWhateverWentWrongBefore) {
   const auto found = Journal::Open(path_);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->entries.size(), 1U);
+  errno = EINTR;
+  EXPECT_TRUE(found->journal->Write({EventOf(3, 2, 100)}));
+  EXPECT_THAT(Numbers(), ElementsAre(1, 2));
+}
+
+// LIVE-3.21: where the new one cannot take its place nothing is left of it, and that is said.
+TEST_F(JournalBoundsTest, IsNotReplacedWhereItsNameIsTaken) {
+  const auto journal = Open();
+  ASSERT_TRUE(journal->Write({EventOf(3, 1, 100)}));
+  std::filesystem::remove(path_);
+  std::filesystem::create_directory(path_);
+  const Status replaced = journal->Replace({EventOf(3, 2, 200)});
+  ASSERT_FALSE(replaced);
+  EXPECT_EQ(replaced.error().code, ErrorCode::kCellJournal);
+  EXPECT_TRUE(NothingIsLeftBeside());
+  EXPECT_EQ(journal->bytes(), 100);
 }
 
 // LIVE-3.25: marks are left out from 10,000 entries on, and then when twice as many and as many
@@ -333,6 +354,8 @@ TEST_F(JournalBoundsTest, MarksAreLeftOutWhenThatIsWorthWhile) {
   EXPECT_EQ(unstored.all().size(), 1U);
   unstored.Stored(1);
   EXPECT_TRUE(unstored.empty());
+  unstored.Add(std::vector<v1::JournalEntry>(kMarks, mark));  // as at the beginning
+  EXPECT_EQ(unstored.all().size(), 1U);
 }
 
 // Only those that are there count, not one that was taken off their end.

@@ -94,6 +94,7 @@ TEST_F(JournalTest, IsCutAtTheFirstTornRecord) {
       const Journal::Found found = Open();
       ASSERT_EQ(found.entries.size(), length / record) << length;
       ASSERT_EQ(found.torn_bytes, static_cast<std::int64_t>(length % record)) << length;
+      ASSERT_EQ(Bytes().size(), length - length % record) << length;
       ASSERT_TRUE(found.journal->Write({Entry(3, 9)}));
     }
     ASSERT_EQ(Open().entries.back().sequence(), 9) << length;

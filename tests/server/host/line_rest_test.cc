@@ -93,6 +93,17 @@ TEST_F(LineAtRest, AStatusThatIsNotAnsweredIsNone) {
   EXPECT_EQ(Heartbeats(), 6U);
 }
 
+// LIVE-3.16: what a moving machine tells is no heartbeat and needs none; that it begins or ends to
+// move does.
+TEST_F(LineAtRest, AStatusOfWhatMovesIsNone) {
+  for (int status = 0; status < 2; ++status) TellStatus(v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Heartbeats(), 0U);
+  TellStatus(v1::MACHINE_STATE_IDLE);
+  EXPECT_EQ(Heartbeats(), 1U);
+  for (int status = 0; status < 2; ++status) TellStatus(v1::MACHINE_STATE_RUNNING);
+  EXPECT_EQ(Heartbeats(), 2U);
+}
+
 // One answer is for one status.
 TEST_F(LineAtRest, AnAnswerCountsOnce) {
   Answer(0);

@@ -77,6 +77,7 @@ TEST_F(LiveHostDisk, AMachineThatStandsWaitsForNoDisk) {
   const std::vector<v1::HostRequest> told = server_->Told(v1::HostRequest::kStatus, before);
   for (auto one = told.begin() + static_cast<std::ptrdiff_t>(before); one != told.end(); ++one)
     EXPECT_FALSE(IsLate(one->status()));
+  EXPECT_EQ(Count(v1::HostRequest::kAnswer), static_cast<std::size_t>(number_));  // each once
 }
 
 // LIVE-3.21: the disk is late when a write takes more than a second, and not since the last one

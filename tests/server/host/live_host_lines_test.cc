@@ -1,10 +1,13 @@
 // What a host says to its servers of itself, and when (live.md 3.04 to 3.07, 3.16).
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "server/host/journal.h"
 #include "tests/server/host/live_host_bed.h"
+#include "tests/storage/quiet_process.h"
 
 namespace rmlcell::server {
 namespace {
@@ -85,6 +88,50 @@ TEST_F(LiveHostLines, ItEndsWhenAllItsServersAreOfAnotherVersion) {
   EXPECT_EQ(Count(v1::HostRequest::kHello), 3U);  // the first, and one refusal for each server
 }
 
+// LIVE-3.07: one after the other: a server that has taken it since begins the count anew.
+TEST_F(LiveHostLines, ItGoesOnWhenItWasWelcomeBetween) {
+  FakeHostServer other("unix:" + folder_ + "/b");
+  other.Refuse({grpc::StatusCode::UNAVAILABLE, "away"});
+  v1::HostWelcome welcome = WelcomeTo("rml1");
+  welcome.add_servers(other.address());
+  Live(welcome);
+  for (std::size_t hellos = 3; hellos <= 5; hellos += 2) {
+    server_->RefuseOnce({grpc::StatusCode::FAILED_PRECONDITION, "of another version"});
+    server_->EndLine();
+    server_->Told(v1::HostRequest::kHello, hellos);  // it was refused, and came again
+    EXPECT_EQ(AskWhereItIs().run_state().fence(), 7);
+  }
+  stopping_ = true;
+  EXPECT_EQ(host_.get(), 0);
+  EXPECT_EQ(server_->Told(v1::HostRequest::kHandBack, 1)[0].hand_back().fence(), 7);
+}
+
+// LIVE-7.02: a handbox is shown when it has changed, and not with each status.
+TEST_F(LiveHostLines, AHandboxIsShownWhenItHasChanged) {
+  Live(WelcomeTo("optimo"));
+  server_->Told(v1::HostRequest::kStatus, Count(v1::HostRequest::kStatus) + 2);
+  const std::vector<v1::HostRequest> shown = server_->Told(v1::HostRequest::kPanel, 1);
+  for (std::size_t i = 1; i < shown.size(); ++i)
+    EXPECT_NE(shown[i].panel().SerializeAsString(), shown[i - 1].panel().SerializeAsString());
+}
+
+// LIVE-3.16: between what it tells it rests, be it heard or not.
+TEST_F(LiveHostLines, ItRestsWhereNothingIsToDo) {
+  for (const char* family : {"rml1", "optimo"}) {
+    Live(WelcomeTo(family));
+    EXPECT_TRUE(ComesToRest()) << family;
+    server_->Refuse({grpc::StatusCode::UNAVAILABLE, "away"});
+    server_->EndLine();
+    server_->AwaitEnds(1);
+    EXPECT_TRUE(ComesToRest()) << family;
+    stopping_ = true;
+    EXPECT_EQ(host_.get(), 0);
+    stopping_ = false;
+    server_ = std::make_unique<FakeHostServer>("unix:" + folder_ + "/" + family);
+    std::filesystem::remove(JournalPath());
+  }
+}
+
 // LIVE-3.06: a server that it comes back to is told where it stands, and what it has not stored.
 TEST_F(LiveHostLines, ALineThatIsTakenUpAgainBeginsWithWhatIsNotStored) {
   Live();
@@ -116,6 +163,7 @@ TEST_F(LiveHostLines, AJobThatWasAboutToBeginIsToldUntilItIsKnown) {
   ASSERT_TRUE(Journal::Open(JournalPath())->journal->Write({mark, intent}));
   Live();
   EXPECT_EQ(server_->Told(v1::HostRequest::kHello, 1)[0].hello().begin().job(), "jobs/17");
+  AskWhereItIs();  // which stores nothing
   server_->EndLine();
   EXPECT_EQ(server_->Told(v1::HostRequest::kHello, 2)[1].hello().begin().job(), "jobs/17");
   StoreAll();

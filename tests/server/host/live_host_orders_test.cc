@@ -1,6 +1,7 @@
 // Orders over the line of a host that is alive: keys, jobs, previews, programs that are taught.
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -83,6 +84,42 @@ TEST_F(LiveHostOrders, AStopStopsTheKeysThatWait) {
   AskWhereItIs();  // it waits
   EXPECT_TRUE(Ask(StopOrder()).has_halt());
   EXPECT_EQ(AnswerTo(key).refusal().message(), "it was stopped before it began");
+}
+
+// LIVE-3.10, LIVE-2.05: whatever comes while the host is busy is answered, each once: what halts
+// acts, what it stops is told so, and for what there is no room that is said.
+TEST_F(LiveHostOrders, WhateverComesAtOnceIsAnswered) {
+  constexpr std::size_t kOfEach = 300;  // more than may wait
+  Live();
+  TakeControl();
+  const std::size_t before = Count(v1::HostRequest::kAnswer);
+  std::string text = "PA;PA;VS1;";
+  for (int line = 0; line < 300'000; ++line) text += "PU100,0;";
+  v1::HostOrder long_look = PreviewOf(5, 2);
+  *long_look.mutable_brought() = JobOrder("", text).run_job().programs(0);
+  Send(long_look);
+  const std::int64_t started = Send(StartOf());
+  v1::HostOrder where;
+  where.mutable_run_state();
+  for (std::size_t i = 0; i < kOfEach; ++i) Send(where);
+  const std::int64_t first_stop = number_ + 1;
+  for (std::size_t i = 0; i < kOfEach; ++i) Send(StopOrder());
+  const auto told = server_->Told(v1::HostRequest::kAnswer, before + 2 + 2 * kOfEach);
+  std::map<std::int64_t, v1::HostOrderAnswer> answers;
+  for (auto one = told.begin() + static_cast<std::ptrdiff_t>(before); one != told.end(); ++one)
+    EXPECT_TRUE(answers.emplace(one->answer().number(), one->answer()).second);
+  EXPECT_EQ(answers.size(), 2 + 2 * kOfEach);
+  if (answers[started].has_refusal()) {
+    EXPECT_EQ(answers[started].refusal().message(), "it was stopped before it began");
+  }
+  for (std::int64_t number = started + 1; number < first_stop; ++number) {
+    if (answers[number].has_run_state()) continue;
+    EXPECT_EQ(answers[number].refusal().code(), CodeText(ErrorCode::kCellUnavailable));
+    EXPECT_EQ(answers[number].refusal().message(), "too many orders wait for it");
+  }
+  for (std::int64_t number = first_stop; number <= number_; ++number)
+    EXPECT_TRUE(answers[number].has_halt()) << answers[number].refusal().message();
+  EXPECT_NE(Ask(StopOrder()).halt().status().state(), v1::MACHINE_STATE_RUNNING);
 }
 
 // LIVE-5.04: the run of a job moves when its begin is in the store.

@@ -209,6 +209,23 @@ TEST_F(LiveHostServers, ARunThatNobodySeesIsHeld) {
               testing::HasSubstr(CodeText(ErrorCode::kCellServerLost)));
 }
 
+// LIVE-3.31: over a loss that is shorter than its machine allows a run goes on, however long it was
+// seen before.
+TEST_F(LiveHostServers, ARunGoesOnOverAShortLoss) {
+  v1::HostWelcome welcome = WelcomeTo("rml1");
+  welcome.mutable_options()->set_server_lost(v1::MachineOptions::SERVER_LOST_GO_ON);
+  welcome.mutable_options()->mutable_server_lost_after()->set_seconds(3);
+  Live(welcome);
+  TakeControl();
+  ASSERT_FALSE(Ask(StartOf()).has_refusal());
+  AwaitStatus([](const v1::MachineStatus& one) { return one.run().run_time_ns() > 4'000'000'000; });
+  server_->EndLine();
+  server_->AwaitEnds(1);  // a status that comes behind this is of the new line
+  const std::size_t before = Count(v1::HostRequest::kStatus);
+  EXPECT_EQ(AwaitStatus([](const v1::MachineStatus&) { return true; }, before).state(),
+            v1::MACHINE_STATE_RUNNING);
+}
+
 // LIVE-3.04: a lease that nobody renews ends: the machine rests before.
 TEST_F(LiveHostServers, ARunIsHeldBeforeItsLeaseEnds) {
   v1::HostWelcome welcome = WelcomeTo("rml1");

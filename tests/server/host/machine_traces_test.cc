@@ -155,7 +155,9 @@ TEST_F(MachineTraces, AKeyIsLetGoWhereItsLineBecomesSlow) {
     EXPECT_EQ(State(), v1::MACHINE_STATE_JOGGING);
   }
   Pass(50ms);
+  Of(v1::JournalEntry::kApplied);
   const v1::HostOrderAnswer slow = Do(BeatSentBefore(60ms, true));
+  EXPECT_EQ(Of(v1::JournalEntry::kApplied).size(), 1U);  // at once
   EXPECT_EQ(slow.refusal().code(), CodeText(ErrorCode::kCellKeySequence));
   EXPECT_THAT(slow.refusal().message(), HasSubstr("takes 60 ms to come, at most 40 ms"));
   Pass(100ms);  // less than a silence

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/recording/recording.h"
 #include "server/host/recovered.h"
 
 namespace rmlcell::server {
@@ -120,6 +121,33 @@ TEST_F(OpenedMachines, WhereThatCannotBeWrittenThereIsNoMachine) {
   EXPECT_EQ(Open(WelcomeWith(7)), ErrorCode::kCellJournal);
   std::filesystem::remove_all(folder_);
   EXPECT_EQ(Open(WelcomeWith(7)), ErrorCode::kCellJournal);
+}
+
+// It is the one that its server means, by the fence that it was given, set up as it says.
+TEST_F(OpenedMachines, AMachineIsAsItsServerSays) {
+  v1::HostWelcome welcome = WelcomeWith(7);
+  welcome.mutable_options()->set_start(v1::MachineOptions::START_PERSON);
+  (*welcome.mutable_parameters())["ORIGIN_X"] = "5";
+  const HostTime now{.steady = std::chrono::hours(1), .wall = WallTime(std::chrono::hours(9))};
+  const auto opened = OpenMachine(
+      welcome, {.server = "", .join_token = "", .machine = "machines/m", .journal = journal_},
+      "workshop/1", now);
+  ASSERT_TRUE(opened) << opened.error().detail;
+  const v1::MachineStatus status = opened->machine->StatusAt(now);
+  EXPECT_EQ(status.machine(), "machines/m");
+  EXPECT_EQ(status.host(), "workshop/1");
+  EXPECT_EQ(status.fence(), 9);
+  ASSERT_EQ(status.start_blockers_size(), 1);
+  EXPECT_EQ(status.start_blockers(0).code(), CodeText(ErrorCode::kCellMode));
+  opened->machine->Begin({}, now);
+  v1::HostOrder order;
+  order.mutable_recording();
+  const auto recorded = recording::ReadFile(opened->machine->Do(order, now).recording().chunk());
+  ASSERT_TRUE(recorded) << recorded.error().detail;
+  EXPECT_EQ(recorded->head.family(), "rml1");
+  EXPECT_EQ(recorded->head.profile(), "srm-20");
+  ASSERT_EQ(recorded->head.parameters_size(), 1);
+  EXPECT_EQ(recorded->head.parameters().at("ORIGIN_X"), "5");
 }
 
 TEST_F(OpenedMachines, WhatNoMachineCanBeMadeOfIsRefused) {

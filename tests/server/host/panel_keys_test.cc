@@ -316,6 +316,8 @@ TEST_F(PanelKeysTest, ANewLeaseKnowsNothingOfTheOneBefore) {
   Control();
   sequence_of_keys_ = 0;
   beats_ = 0;
+  EXPECT_TRUE(host_->WaitsForKeys(Key("COVER", v1::KEY_ACTION_TAP, 2), now_));
+  EXPECT_FALSE(host_->WaitsForKeys(Key("COVER", v1::KEY_ACTION_TAP, 1), now_));
   const v1::HostOrderAnswer pressed = Do(Key("X+", v1::KEY_ACTION_PRESS));
   EXPECT_EQ(pressed.status().state(), v1::MACHINE_STATE_JOGGING) << pressed.refusal().message();
   Hold("X+", 500ms);

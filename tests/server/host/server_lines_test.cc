@@ -52,7 +52,7 @@ class ServerLinesTest : public testing::Test {
           ++gone_;
           changed_.notify_all();
         },
-        {.last_words = kComesWithin});
+        {.last_words = kLongerThanATest});
   }
   template <class Condition>
   bool Eventually(Condition condition) {
@@ -180,7 +180,7 @@ class FurtherLinesTest : public ServerLinesTest {
                         ++wakes_;
                         changed_.notify_all();
                       },
-                      kComesWithin};
+                      kLongerThanATest};  // nobody is silent here
 };
 
 // By numbers that no other line has; answered where it was asked, once.

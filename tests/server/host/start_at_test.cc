@@ -97,7 +97,8 @@ TEST_F(StartAtTest, ItBeginsWhereItWasAsked) {
   EXPECT_EQ(host_->StatusAt(now_).hold_reason(), v1::HOLD_REASON_ENTRY);
   EXPECT_EQ(host_->StatusAt(now_).run().phase(), v1::RUN_PHASE_PROGRAM);
   EXPECT_EQ(host_->StatusAt(now_).run().place().step(), 8);  // where a crash would leave it
-  static_cast<void>(host_->TakeEntries(now_, true));
+  for (const v1::JournalEntry& entry : host_->TakeEntries(now_, true))  // nor of what is to come
+    EXPECT_LE(entry.virtual_time_ns(), host_->StatusAt(now_).virtual_time_ns());
   Do(Resume());
   Until(v1::MACHINE_STATE_IDLE);
   static_cast<void>(host_->TakeEntries(now_, true));

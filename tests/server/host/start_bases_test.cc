@@ -41,9 +41,11 @@ class StartBasesTest : public HostMachineTest {
     order.mutable_preview_start()->set_occurrence(occurrence);
     *order.mutable_brought() = JobOf("DELAY 1.\nDELAY 2.\nSTOP\n").run_job().programs(0);
     const auto task = host_->PreparePreview(order, now_);
+    if (task) looked_at_ = task->start.target;
     return task ? std::string()
                 : CodeText(task.error().code) + " " + std::string(task.error().detail);
   }
+  machine::StepTarget looked_at_;
 };
 
 // LIVE-5.10, LIVE-6.01: the pass is asked for where the program had come to a step, however early.
@@ -55,6 +57,7 @@ TEST_F(StartBasesTest, ThePassOfAStepIsAskedFor) {
   }
   CutOffAtStep(0);
   EXPECT_THAT(WhyNoPreview(0), Not(HasSubstr("name the occurrence")));
+  EXPECT_EQ(looked_at_.at.step, 1);  // steps count from there
 }
 
 // LIVE-6.01: it goes on with the program that was cut off, named or not, and with no other.
@@ -86,6 +89,27 @@ TEST_F(StartBasesTest, AProgramThatIsBroughtMustBeOne) {
   const auto task = host_->PreparePreview(order, now_);
   ASSERT_FALSE(task);
   EXPECT_EQ(CodeText(task.error().code), "OPT-E7004");
+}
+
+// What a job brings is run in its own slot; a start of another program is one of what is stored.
+TEST_F(StartBasesTest, AProgramIsBroughtForItsSlotAlone) {
+  MakeAndTake();
+  v1::HostMemory memory;
+  memory.add_programs()->set_slot(6);
+  memory.mutable_programs(0)->set_content("PA;PA;VS10;PU200,0;");
+  host_->Change(memory, now_);
+  const auto brings = [this](int program) {
+    v1::HostOrder order;
+    order.set_number(++number_);
+    order.mutable_preview_start()->set_program(program);
+    order.mutable_preview_start()->mutable_step()->set_step(1);
+    *order.mutable_brought() = JobOf("PA;PA;VS5;PU100,0;", "other.rml").run_job().programs(0);
+    const auto task = host_->PreparePreview(order, now_);
+    EXPECT_TRUE(task) << task.error().detail;
+    return task && task->start.brought.has_value();
+  };
+  EXPECT_TRUE(brings(5));
+  EXPECT_FALSE(brings(6));
 }
 
 // LIVE-6.01: what could not be worked out is no start that may begin.

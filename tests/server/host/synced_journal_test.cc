@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -21,12 +24,18 @@
 namespace {
 
 std::atomic<int> data_synced = 0;
+std::atomic<bool> disk_fails = false;
 
 }  // namespace
 
-// In place of that of the library, for all of this program: what was synced is counted.
+// In place of that of the library, for all of this program: what was synced is counted, and fails
+// where a test wants that.
 extern "C" int fdatasync(int file) {
   ++data_synced;
+  if (disk_fails) {
+    errno = EIO;
+    return -1;
+  }
   return static_cast<int>(::syscall(SYS_fdatasync, file));
 }
 
@@ -36,7 +45,10 @@ namespace {
 class SyncedJournal : public testing::Test {
  protected:
   SyncedJournal() { std::filesystem::remove(path_); }
-  ~SyncedJournal() override { std::filesystem::remove(path_); }
+  ~SyncedJournal() override {
+    disk_fails = false;
+    std::filesystem::remove(path_);
+  }
   static v1::JournalEntry Said(std::int64_t sequence, std::size_t bytes) {
     v1::JournalEntry entry;
     entry.set_fence(3);
@@ -61,6 +73,34 @@ TEST_F(SyncedJournal, WhatIsWrittenIsOnTheDisk) {
   before = data_synced;
   ASSERT_TRUE(journal->Write({}));
   EXPECT_EQ(data_synced, before);
+}
+
+// LIVE-3.21: what the disk did not take is not there, whatever was written of it.
+TEST_F(SyncedJournal, WhatCannotBeSyncedIsNotThere) {
+  const auto journal = Open();
+  ASSERT_TRUE(journal->Write({Said(1, 10)}));
+  const auto size = std::filesystem::file_size(path_);
+  disk_fails = true;
+  for (const Status& done : {journal->Write({Said(2, 10)}), journal->Replace({Said(3, 10)})}) {
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, ErrorCode::kCellJournal);
+    EXPECT_THAT(done.error().detail, testing::HasSubstr(std::strerror(EIO)));
+  }
+  EXPECT_EQ(std::filesystem::file_size(path_), size);
+  EXPECT_EQ(journal->bytes(), static_cast<std::int64_t>(size));
+  EXPECT_FALSE(std::filesystem::exists(path_ + ".new"));
+}
+
+// LIVE-3.21: it is tried again until it is there, and not without a rest between.
+TEST_F(SyncedJournal, IsTriedAgainAfterARest) {
+  JournalWriter writer(Open());
+  disk_fails = true;
+  std::promise<void> written;
+  writer.Write({Said(1, 10)}, {}, [&written] { written.set_value(); });
+  while (!writer.trouble()) std::this_thread::yield();
+  EXPECT_TRUE(ComesToRest());
+  disk_fails = false;
+  written.get_future().wait();
 }
 
 // What the store has is dropped when it has it, and not with what is written next.

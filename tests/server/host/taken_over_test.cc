@@ -160,6 +160,16 @@ TEST_F(TakenOver, AHelloHasTheBeginOfAJob) {
   EXPECT_EQ(had_job_, "jobs/17");
 }
 
+// LIVE-5.20: also where nothing stood before, since all of that was stored and dropped.
+TEST_F(TakenOver, AHelloHasTheBeginThatIsAllThereIs) {
+  const v1::HostHello hello = HelloBehind({IntentFor(2, "jobs/17")});
+  EXPECT_FALSE(hello.has_journal_mark());
+  EXPECT_EQ(hello.begin().job(), "jobs/17");
+  EXPECT_EQ(hello.begin().fence(), 7);
+  EXPECT_EQ(hello.begin().sequence(), 2);
+  EXPECT_FALSE(hello.begin().has_mark());
+}
+
 // LIVE-3.30: once it has a fence its machine is what it has, and not the journal; of a job that was
 // about to begin it tells as long as the server does not know.
 TEST_F(TakenOver, AHostWithAFenceTellsNoMoreOfItsJournal) {

@@ -119,6 +119,39 @@ TEST_F(AssignmentTest, ProgramsOfTheJobGoOverThoseOfTheMachine) {
   EXPECT_EQ(Revisions(made.first.assignment()), 0);
 }
 
+// What a job brings is not what its machine has stored there, and has nothing of that.
+TEST_F(AssignmentTest, AProgramThatIsBroughtHasNothingOfWhatIsStoredInItsSlot) {
+  Put(9, "stored 9");
+  Must(bed.store().PutExecutable("optimo-1", 9, 1, "executable 9"));
+  v1::SubmitJobRequest request;
+  v1::Job& job = *request.mutable_job();
+  job.set_kind(v1::JOB_KIND_SIMULATE);
+  job.set_machine("machines/optimo-1");
+  job.set_inline_slot(9);
+  job.mutable_inline_program()->set_file_name("part.O");
+  job.mutable_inline_program()->set_form(v1::PROGRAM_FORM_OBJECT);
+  job.mutable_inline_program()->set_content("brought 9");
+  const auto made = Must(MakeAssignment(bed.store(), config, Lease(request)));
+  const v1::WorkerAssignment& assignment = made.first.assignment();
+  EXPECT_EQ(Contents(assignment), (Programs{{9, "brought 9"}}));
+  EXPECT_EQ(assignment.programs(0).title(), "");
+  EXPECT_EQ(assignment.programs(0).executable(), "");
+  EXPECT_EQ(Revisions(assignment), 0);
+}
+
+// Two slots with the same bytes are two programs.
+TEST_F(AssignmentTest, TheSameObjectInAnotherSlotIsAProgramOfItsOwn) {
+  for (const int slot : {31, 32, 44}) Put(slot, "object");
+  Must(bed.store().PutExecutable("optimo-1", 32, 1, "executable 32"));
+  const auto made = Must(MakeAssignment(bed.store(), config, Lease(Stored(32))));
+  const v1::WorkerAssignment& assignment = made.first.assignment();
+  EXPECT_EQ(Contents(assignment), (Programs{{31, "object"}, {32, "object"}, {44, "object"}}));
+  for (const v1::AssignedProgram& program : assignment.programs()) {
+    EXPECT_EQ(program.title(), "p" + std::to_string(program.slot()));
+    EXPECT_EQ(program.executable(), program.slot() == 32 ? "executable 32" : "");
+  }
+}
+
 // Nothing follows the assignment of what is not in it any more, however large it was.
 TEST_F(AssignmentTest, WhatIsReplacedDoesNotFollow) {
   Put(44, "stored 44");

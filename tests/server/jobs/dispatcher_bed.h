@@ -99,6 +99,7 @@ class HookedStore final : public ForwardingStore {
   // Set before the dispatcher is made.
   std::function<void()> after_acquire;   // before the dispatcher hears of the job
   std::function<void()> before_machine;  // an assignment is made from it
+  std::function<void()> before_orders;   // of other servers are looked for
   // So many of the next calls fail, as on a full disk.
   std::atomic<int> finishes_that_fail = 0;
   std::atomic<int> renewals_that_fail = 0;
@@ -117,7 +118,8 @@ class HookedStore final : public ForwardingStore {
   // Calls that have returned.
   std::atomic<int> sweeps = 0;
   std::atomic<int> jobs_read = 0;
-  std::atomic<int> hints = 0;  // told to the dispatcher and to the feed
+  std::atomic<int> hints = 0;       // told to the dispatcher and to the feed
+  std::atomic<int> orders_put = 0;  // for other servers; counted as they come
 
   std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
     return store_.Watch([this, changed = std::move(changed)] {
@@ -129,6 +131,14 @@ class HookedStore final : public ForwardingStore {
   Result<storage::JobRecord> GetJob(std::int64_t id) override {
     ++jobs_read;
     return store_.GetJob(id);
+  }
+  Status PutOrder(std::int64_t job, std::string_view from, std::string_view payload) override {
+    ++orders_put;
+    return store_.PutOrder(job, from, payload);
+  }
+  Result<std::vector<storage::TakenOrder>> TakeOrders(std::string_view server) override {
+    if (before_orders) before_orders();
+    return store_.TakeOrders(server);
   }
   Result<storage::MachineMemory> GetMachineMemory(std::string_view id,
                                                   const WantsPrograms& wants_programs) override {

@@ -332,8 +332,9 @@ TEST(DispatcherDrain, AsksForEverythingBackAndGivesOutNothingMore) {
   ASSERT_TRUE(busy.Take());
   FakeWorker idle(bed.dispatcher(), "idle");
   std::jthread server([&] { bed.dispatcher().Drain(std::chrono::hours(1)); });
-  EXPECT_TRUE(busy.line().Next(v1::WorkResponse::kStop).has_stop());
-  EXPECT_TRUE(idle.line().Next(v1::WorkResponse::kStop).has_stop());
+  // worker.proto, WorkerStop: each is told why.
+  EXPECT_NE(busy.line().Next(v1::WorkResponse::kStop).stop().reason(), "");
+  EXPECT_NE(idle.line().Next(v1::WorkResponse::kStop).stop().reason(), "");
   busy.HandBack();
   server.join();
   EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
@@ -355,6 +356,16 @@ TEST(DispatcherDrain, WaitsNoLongerThanItsPatience) {
   ASSERT_TRUE(stubborn.line().Next(v1::WorkResponse::kEventsStored).has_events_stored());
   bed.dispatcher().Drain(milliseconds(100));  // returns, though nothing is handed back
   EXPECT_EQ(bed.Job(stubborn.job()).state, JobState::kRunning);
+}
+
+// dispatcher.h, Drain: for good; leases are not looked after any more.
+TEST(DispatcherDrain, LooksAtNoLeaseAnyMore) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 2;  // leases are looked at all the time
+  bed.dispatcher().Drain(milliseconds(0));
+  const int looks = bed.hooks.sweeps;
+  for (int job = 0; job < 50; ++job) bed.server.SubmitCheck();
+  EXPECT_EQ(bed.hooks.sweeps, looks);
 }
 
 // The server stops while a job is on its way to a worker that is told to stop as well.

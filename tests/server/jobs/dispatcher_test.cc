@@ -129,9 +129,13 @@ TEST(DispatcherAssign, AJobIsGivenOutAsItIsStored) {
   DispatcherBed bed;
   FakeWorker worker(bed.dispatcher(), "w");
   bed.LookAgain();
-  const std::int64_t job = bed.server.SubmitCheck();
-  EXPECT_EQ(bed.Job(job).state, JobState::kRunning);
-  EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+  std::int64_t job = 0;
+  {
+    const auto busy = bed.Occupy();  // as soon as it is stored its orders find its worker
+    job = bed.server.SubmitCheck();
+    EXPECT_EQ(bed.Job(job).state, JobState::kRunning);
+    EXPECT_TRUE(bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+  }
   ASSERT_TRUE(worker.Take());
   EXPECT_EQ(worker.job(), job);
   EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <thread>
 #include <vector>
 
@@ -157,6 +158,80 @@ TEST(DispatcherControl, AnOrderThatFoundNobodyIsNotForTheNextAttempt) {
   EXPECT_FALSE(looks.line().Has(v1::WorkResponse::kControl));
 }
 
+// Nor for a later job of his who had looked and was given another: that it could not be begun
+// changes nothing.
+TEST(DispatcherControl, AnOrderIsNotKeptBeyondTheJobThatWasFound) {
+  std::atomic<bool> keeps_next_end = false;
+  DispatcherBed bed;
+  bed.hooks.after_acquire = [&] {
+    if (keeps_next_end) bed.hooks.keeps_ends = true;
+  };
+  bed.server.SubmitCheck();
+  FakeWorker looks(bed.dispatcher(), "looks");
+  ASSERT_TRUE(looks.Take());
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker gives_back(bed.dispatcher(), "gives back");
+  ASSERT_TRUE(gives_back.Take());
+  ASSERT_EQ(gives_back.job(), job);
+  Must(bed.server.store().SubmitAndWait(
+      {.machine = "optimo-1", .kind = "CHECK", .specification = "\xFF\xFF no message"}));
+  bed.hooks.keeps_ends = true;
+  looks.Finish();
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.ends_kept == 1; }));
+  bed.hooks.losses_that_fail = 1'000'000;
+  gives_back.HandBack();
+  ASSERT_TRUE(Eventually([&] {
+    return !bed.dispatcher().OrderAtOnce(job, {.kind = v1::WorkerControl::KIND_RESUME});
+  }));
+  EXPECT_TRUE(bed.dispatcher().Control(job, {.kind = v1::WorkerControl::KIND_HOLD}));
+  keeps_next_end = true;
+  bed.hooks.Answer();  // it is given what nobody can work on
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.ends_kept == 2; }));
+  keeps_next_end = false;
+  bed.hooks.losses_that_fail = 0;
+  ASSERT_TRUE(bed.Becomes(job, JobState::kQueued));
+  bed.hooks.Answer();
+  ASSERT_TRUE(looks.Take());
+  EXPECT_EQ(looks.job(), job);
+  bed.Settle();
+  EXPECT_FALSE(looks.line().Has(v1::WorkResponse::kControl));
+}
+
+// scale-out.md PG-15.26: a server whose workers do nothing does not ask the store for orders.
+TEST(DispatcherControl, NoOrdersAreLookedForWhereNobodyWorks) {
+  std::atomic<int> looks = 0;
+  DispatcherBed bed;
+  bed.hooks.before_orders = [&looks] { ++looks; };
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.sweeps > 0; }));  // the thread beside it is at work
+  bed.LookAgain();
+  EXPECT_EQ(looks, 0);
+  bed.server.SubmitCheck();
+  ASSERT_TRUE(worker.Take());
+  EXPECT_TRUE(Eventually([&] { return looks > 0; }));
+}
+
+// A client may read that a job runs before its server has heard so: when the store says that no
+// other server has it, this one has.
+TEST(DispatcherControl, AnOrderForAJobThatIsJustGivenOutIsNotRefused) {
+  DispatcherBed bed;
+  std::promise<Status> ordered;
+  std::jthread client;
+  bed.hooks.after_acquire = [&] {
+    if (client.joinable()) return;
+    client = std::jthread([&] {
+      ordered.set_value(bed.dispatcher().Control(1, {.kind = v1::WorkerControl::KIND_HOLD}));
+    });
+    Eventually([&] { return bed.hooks.orders_put == 1; });  // it has found no worker that has it
+  };
+  FakeWorker worker(bed.dispatcher(), "w");
+  bed.LookAgain();
+  ASSERT_EQ(bed.server.SubmitCheck(), 1);
+  ASSERT_TRUE(worker.Take());
+  EXPECT_TRUE(ordered.get_future().get());
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
+}
+
 // The server begins to stop between the lease of a job and its way to the worker, who is told to
 // stop as well: the job goes back.
 TEST(DispatcherDrain, AJobThatIsBeingMadeReadyGoesBack) {
@@ -197,6 +272,53 @@ TEST(DispatcherDrain, AJobThatComesAsTheServerStopsIsNotSent) {
   EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
   EXPECT_EQ(bed.Job(job).attempts, 0);
   EXPECT_FALSE(worker.HasJob());
+}
+
+// scale-out.md IF-04: a store that could not give its programs is not asked for a job at once. In a
+// moment it is, by the thread that looks for orders, which does not come to that here.
+TEST(DispatcherFailures, AJobThatGoesBackUnreadIsNotGivenOutAtOnce) {
+  std::atomic<bool> looks = false;
+  std::promise<void> go_on;
+  DispatcherBed bed;
+  bed.hooks.before_orders = [&looks, wait = go_on.get_future().share()] {
+    looks = true;
+    wait.wait();
+  };
+  bed.hooks.before_machine = [&looks] { Eventually([&looks] { return looks.load(); }); };
+  bed.hooks.machines_that_fail = 1;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker worker(bed.dispatcher(), "w");
+  EXPECT_TRUE(Eventually([&] { return bed.hooks.machines_that_fail == 0; }));
+  bed.LookAgain();
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_FALSE(worker.HasJob());
+  go_on.set_value();
+  EXPECT_TRUE(worker.Take());
+}
+
+// scale-out.md IF-03: events that the store did not take at first went with the end of their job; a
+// moment later there is nothing left of it to be tried again.
+TEST(DispatcherFailures, WhatWasPutOffIsOverWithItsJob) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.appends_that_fail = 1;
+  worker.Events(1, "a");
+  bed.Settle();
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), true);
+  bed.LookAgain();
+  // Whoever asks again a moment later does so behind what is tried again.
+  bed.hooks.acquires_that_fail = 1;
+  FakeWorker other(bed.dispatcher(), "other");
+  ASSERT_TRUE(Eventually([&] { return bed.hooks.standing == 2; }));
+  bed.Settle();
+  EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kRelease));
+  EXPECT_FALSE(worker.line().Has(v1::WorkResponse::kEventsStored));
+  EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+  bed.server.SubmitCheck();
+  EXPECT_TRUE(Eventually([&] { return worker.HasJob() || other.HasJob(); }));
 }
 
 // scale-out.md IF-04: the job is as good as before, and its log says that it waits again, no more.

@@ -65,6 +65,11 @@ TEST(JobFilter, JoinsComparisonsByAnd) {
   EXPECT_EQ(query.kind, "CHECK");
   EXPECT_EQ(query.caller, "c");
   EXPECT_EQ(query.finished, true);
+  // A text in double quotes ends with them.
+  const JobQuery close = Applied("caller=\"anna\"AND text=\"lid\"AND kind=RUN");
+  EXPECT_EQ(close.caller, "anna");
+  EXPECT_EQ(close.text, "lid");
+  EXPECT_EQ(close.kind, "RUN");
 }
 
 // A filter that is not understood must not ask for something else.

@@ -127,6 +127,20 @@ TEST_F(KeptWishes, ARequestThatIsKnownIsTakenWhateverItAwaits) {
   EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellPrecondition);
 }
 
+// Who saw no answer and repeats has his job, though what it was made of is gone by now.
+TEST_F(KeptWishes, ARequestThatIsRepeatedHasItsJobWhateverIsGone) {
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 45, .object = "object"}}, {}));
+  v1::SubmitJobRequest request = Asked(v1::JOB_KIND_SIMULATE, [](v1::Job& asked) {
+    asked.set_program("machines/optimo-1/programs/45");
+  });
+  request.set_request_id("once");
+  const v1::Job made = Must(Submit(request));
+  Must(bed.store().DeleteProgram("optimo-1", 45, storage::kAnyRevision));
+  EXPECT_EQ(Must(Submit(request)).name(), made.name());
+  request.set_request_id("another");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kProgramMissing);
+}
+
 // storage/store.h, NewJob: others are on their way from the same caller.
 TEST_F(KeptWishes, TheStoreIsToldThatMoreCome) {
   for (const bool more_come : {true, false}) Must(Submit(Asked(v1::JOB_KIND_SIMULATE), more_come));

@@ -21,8 +21,12 @@ class CountedLists final : public ForwardingStore {
     if (afterwards) std::exchange(afterwards, {})();
     return machines;
   }
+  std::uint64_t MachineChanges() const override {
+    return being_changed ? 0 : store_.MachineChanges();
+  }
   int lists = 0;
   bool fails = false;
+  bool being_changed = false;
   std::function<void()> afterwards;  // once
 };
 
@@ -58,6 +62,18 @@ TEST_F(KnownMachinesTest, AChangeBehindTheReadingIsNotMissed) {
   Must(known.List());
   EXPECT_EQ(known.ListAtOnce(), nullptr);
   EXPECT_EQ(Must(known.Get("mill-1")).title, "meanwhile");
+}
+
+// Store::MachineChanges: what was read while one is being changed does not stand.
+TEST_F(KnownMachinesTest, WhileOneIsBeingChangedEachIsAskedFor) {
+  store.being_changed = true;
+  EXPECT_EQ(Must(known.List())->size(), 2U);
+  EXPECT_EQ(known.ListAtOnce(), nullptr);
+  Must(known.List());
+  EXPECT_EQ(store.lists, 2);
+  store.being_changed = false;
+  Must(known.List());
+  EXPECT_NE(known.ListAtOnce(), nullptr);
 }
 
 TEST_F(KnownMachinesTest, WhatCannotBeReadIsSaidAndAskedForAgain) {

@@ -14,7 +14,7 @@
 namespace rmlcell::server {
 namespace {
 
-// One that notes which position is asked for.
+// One that notes which position is asked for, and how many events are read for it.
 class AskedStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
@@ -22,7 +22,13 @@ class AskedStore final : public ForwardingStore {
     asked = position;
     return store_.HasPosition(log_id, position);
   }
+  Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after,
+                                                      int limit) override {
+    events_read = limit;
+    return store_.JobEvents(job, after, limit);
+  }
   std::int64_t asked = -1;
+  int events_read = 0;
 };
 
 // It is that very event that is looked for in the other log, not one near it.
@@ -40,6 +46,7 @@ TEST(LogPositions, TheEventThatWasSeenLastIsLookedFor) {
   for (const storage::EventRecord& event : events) {
     ASSERT_TRUE(book.CheckLog(job, event.sequence, bed.store().LogId()));
     EXPECT_EQ(store.asked, event.position) << event.sequence;
+    EXPECT_EQ(store.events_read, 1) << event.sequence;
   }
   ASSERT_TRUE(book.CheckLog(job, events.back().sequence + 1, bed.store().LogId()));
   EXPECT_EQ(store.asked, 0) << "it is not there any more";

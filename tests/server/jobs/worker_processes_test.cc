@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -141,6 +142,25 @@ TEST_F(WorkerProcessesTest, StartsNoMoreWhenItIsToldSo) {
   processes->Stop(std::chrono::seconds(10));
   EXPECT_EQ(Lives().size(), 2U);
   for (const pid_t process : Lives()) EXPECT_FALSE(IsAlive(process));
+}
+
+// What ends as it is asked to is not replaced while the others are waited for.
+TEST_F(WorkerProcessesTest, StartsNoneWhileItStops) {
+  WorkerProcesses::Options options = Options("case \"$*\" in *stubborn*) trap '' TERM; echo > " +
+                                                 folder_.File("ready") + ";; esac\nexec sleep 60",
+                                             5);
+  options.further_pool = "stubborn";
+  options.further_count = 1;
+  auto processes = Must(WorkerProcesses::Start(std::move(options)));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 6 && !Text("ready").empty(); }));
+  steady_.Advance(std::chrono::seconds(5));  // a healthy life: the next one starts at once
+  std::jthread stopping([&] { processes->Stop(std::chrono::hours(1)); });
+  EXPECT_TRUE(Eventually([&] {
+    const std::vector<pid_t> all = Lives();
+    return std::ranges::count_if(all, IsAlive) == 1;
+  }));
+  EXPECT_EQ(Lives().size(), 6U);
+  steady_.Advance(std::chrono::hours(1));
 }
 
 // Patience on both sides of its end, by a clock of the test.

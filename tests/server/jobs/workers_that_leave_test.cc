@@ -115,6 +115,16 @@ TEST_F(WorkersThatLeave, OneThatWaitsWithdrawsWhatItAskedFor) {
   EXPECT_EQ(store.withdrawn, store.newest);
 }
 
+// Nor does a dispatcher that goes leave anything in the store, which would be answered to nobody.
+TEST_F(WorkersThatLeave, WhatIsAskedForGoesWithTheDispatcher) {
+  FakeWorker idle(dispatcher(), "idle");
+  ASSERT_TRUE(Eventually([&] { return store.newest != 0; }));
+  dispatcher().Settle();
+  dispatcher_.reset();
+  EXPECT_EQ(store.withdrawals, 1);
+  EXPECT_EQ(store.withdrawn, store.newest);
+}
+
 // A store that throws as it is asked for a job is asked again a little later.
 TEST_F(WorkersThatLeave, OneWhoseStoreThrewStays) {
   store.asks_that_throw = 1;
@@ -195,6 +205,25 @@ TEST_F(WorkersThatLeave, WhereOneWasIsWhereItsJobEnds) {
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->program, 12);
   EXPECT_EQ(outcome->step, 7);
+}
+
+// Nobody is given a job with an end that is stored when he is gone.
+TEST(JobsOfThoseWhoAreGone, AnEndThatIsStoredLaterBringsNoNextJob) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.hooks.finishes_that_fail = 1'000'000;
+  worker.Finish();
+  bed.Settle();
+  worker.Leave();
+  bed.Settle();
+  const std::int64_t next = bed.server.SubmitCheck();
+  bed.hooks.finishes_that_fail = 0;
+  EXPECT_TRUE(bed.Becomes(job, JobState::kSucceeded));
+  bed.Settle();
+  EXPECT_EQ(bed.hooks.next_given, 0);
+  EXPECT_TRUE(Must(bed.server.store().ListAttempts(next)).empty());
 }
 
 // What nobody can work on has been begun as far as anybody could: an end that the store does not

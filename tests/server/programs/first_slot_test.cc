@@ -8,6 +8,7 @@
 #include "server/programs/special_programs.h"
 #include "server/records/program_memory.h"
 #include "tests/server/engine_bytes.h"
+#include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -72,6 +73,17 @@ TEST_F(FirstSlotMemory, IsUsedByExecutablesToo) {
   EXPECT_FALSE(HasRoomForExecutable(1, 101));
   EXPECT_TRUE(HasRoomForExecutable(2, 60));
   EXPECT_FALSE(HasRoomForExecutable(2, 61));
+}
+
+// A mill takes as much as comes: what it holds is not asked for.
+TEST(MemoryWithoutALimit, IsNotCounted) {
+  ServerBed bed;
+  FailingStore store(bed.store());
+  const storage::MachineRecord mill = Must(bed.store().GetMachine("mill-1"));
+  const std::vector<storage::ProgramWrite> writes{{.slot = 1, .object = "PA;"}};
+  store.FailAt(1);
+  EXPECT_TRUE(CheckRoomFor(store, mill, writes));
+  EXPECT_FALSE(store.failed());
 }
 
 }  // namespace

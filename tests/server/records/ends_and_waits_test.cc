@@ -130,6 +130,27 @@ TEST(EndsAndWaits, HalfAMessageIsNone) {
   EXPECT_EQ(ToProto(record).name(), "jobs/17");
 }
 
+// job.proto: a program comes with its job in the message or by its upload; a stored one does not.
+TEST(EndsAndWaits, AProgramThatWasBroughtHasItsNameAndForm) {
+  v1::Job job;
+  job.set_program("machines/optimo-1/programs/7");
+  EXPECT_FALSE(ProgramBrought(job));
+  job.Clear();
+  job.mutable_inline_program()->set_file_name("inline.O");
+  job.mutable_inline_program()->set_form(v1::PROGRAM_FORM_OBJECT);
+  auto brought = ProgramBrought(job);
+  ASSERT_TRUE(brought);
+  EXPECT_EQ(brought->file_name, "inline.O");
+  EXPECT_EQ(brought->form, v1::PROGRAM_FORM_OBJECT);
+  job.Clear();
+  job.mutable_uploaded_program()->set_file_name("uploaded.S");
+  job.mutable_uploaded_program()->set_form(v1::PROGRAM_FORM_SOURCE);
+  brought = ProgramBrought(job);
+  ASSERT_TRUE(brought);
+  EXPECT_EQ(brought->file_name, "uploaded.S");
+  EXPECT_EQ(brought->form, v1::PROGRAM_FORM_SOURCE);
+}
+
 // A schedule goes to whoever runs a job as it is kept.
 TEST(EndsAndWaits, AScheduleIsAssignedAsItIs) {
   const v1::AssignedSchedule made = ToAssigned(

@@ -30,6 +30,7 @@ using testing::UnorderedElementsAre;
 // A family with one parameter of each kind.
 class TableFamily final : public machine::MachineFamily {
  public:
+  explicit TableFamily(int schedules = 0) { info_.schedules = schedules; }
   const machine::FamilyInfo& info() const override { return info_; }
   std::span<const ParameterInfo> parameters() const override { return table_; }
   std::span<const machine::MachineProfile> profiles() const override { return profiles_; }
@@ -98,8 +99,9 @@ TEST(FamilyMessage, ProfilesHaveTheValuesThatDiffer) {
               UnorderedElementsAre(Pair("SPEED", "99.5"), Pair("START", "RIGHT")));
 }
 
-// OPT-3.44: a laser has schedules, and a mill has none.
+// OPT-3.44: a laser has schedules, and a mill has none; one is enough.
 TEST(FamilyMessage, ALaserHasSchedules) {
+  EXPECT_TRUE(ToProto(TableFamily(1)).has_schedules());
   EXPECT_TRUE(ToProto(*families::FindFamily("optimo")).has_schedules());
   EXPECT_FALSE(ToProto(*families::FindFamily("rml1")).has_schedules());
 }

@@ -92,6 +92,27 @@ TEST_F(AskedOfHosts, WhatNobodyHasSeenToIsNamed) {
               EndsWith("job.run.confirmations: nobody has seen to tool, cover"));
 }
 
+// LIVE-6.04: of several reasons why it may not begin there the first one is told.
+TEST_F(AskedOfHosts, TheFirstReasonAgainstAStartEndsIt) {
+  Tell(Idle());
+  const std::int64_t job =
+      Submit([](v1::Job& asked) { asked.mutable_run()->mutable_step()->set_step(2); });
+  v1::HostRequest request;
+  request.mutable_answer()->set_number(NewestOrder(1).number());
+  v1::PreviewStartResponse& preview = *request.mutable_answer()->mutable_preview();
+  const auto refuse = [&preview](ErrorCode code, const std::string& why) {
+    v1::Diagnostic& one = *preview.add_refusals();
+    one.set_code(CodeText(code));
+    one.set_message(why);
+  };
+  refuse(ErrorCode::kCellStepUnreachable, "within a loop");
+  refuse(ErrorCode::kCellInvalidArgument, "no such pass");
+  hosts.Receive(*link, std::move(request));
+  EXPECT_TRUE(Eventually([&] { return Job(job).state == JobState::kFailed; }));
+  EXPECT_EQ(Job(job).outcome->code, ErrorCode::kCellStepUnreachable);
+  EXPECT_EQ(Job(job).outcome->detail, "within a loop");
+}
+
 // LIVE-6.08: what is only moved or switched asks nobody, and what was seen to is not asked again.
 TEST_F(AskedOfHosts, WhatWasSeenToBegins) {
   Tell(Idle());

@@ -11,15 +11,20 @@ namespace {
 
 using testing::ElementsAre;
 
-// A store that for a while does not say which attempts a job had. Thread-safe.
+// A store that for a while does not say which attempts a job had, or says that the last one is over
+// by now. Thread-safe.
 class SilentAttempts final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
   std::atomic<bool> silent = false;
+  std::atomic<bool> over = false;
 
   Result<std::vector<storage::AttemptRecord>> ListAttempts(std::int64_t job) override {
     if (silent) return Error{ErrorCode::kCellStoreFailed, "the line broke", {}};
-    return store_.ListAttempts(job);
+    auto attempts = store_.ListAttempts(job);
+    if (over && attempts && !attempts->empty())
+      attempts->back().ended_at = attempts->back().started_at;
+    return attempts;
   }
 };
 
@@ -105,6 +110,35 @@ TEST_F(DoubtfulRuns, NothingIsAskedWhileTheAttemptIsNotKnown) {
   store.silent = false;
   EXPECT_EQ(OrdersAfter(std::chrono::milliseconds(0), others), 2U);
   EXPECT_EQ(Orders().back().for_job(), JobName(job));
+}
+
+// Nor of an attempt that was over between the look at the job and the look at that.
+TEST_F(DoubtfulRuns, AnAttemptThatIsOverIsNotAskedFor) {
+  Tell(Idle());
+  Mark();
+  Submit();
+  LookAt("mill-1", others);
+  Accept(NewestOrder(1));
+  Settle();
+  store.over = true;
+  EXPECT_EQ(OrdersAfter(std::chrono::milliseconds(0), others), 1U);
+  EXPECT_EQ(OrdersAfter(RunQueue::kUnheardOf, others), 1U);
+}
+
+// Nor is anything concluded from a line that breaks before its host has answered.
+TEST_F(DoubtfulRuns, AQuestionWithoutAnAnswerSaysNothing) {
+  Tell(Idle());
+  Mark();
+  const std::int64_t job = Submit();
+  LookAt("mill-1", runs);
+  Accept(NewestOrder(1));
+  Settle();
+  ASSERT_EQ(OrdersAfter(RunQueue::kUnheardOf, runs), 2U);
+  ASSERT_TRUE(Orders().back().has_run_state());
+  hosts.Leave(*link);
+  Settle();
+  EXPECT_EQ(Job(job).state, JobState::kRunning);
+  EXPECT_EQ(Job(job).attempts, 1);
 }
 
 // LIVE-2.05: what is not known to be this server's any more does not begin.

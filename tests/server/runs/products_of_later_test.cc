@@ -8,6 +8,7 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,13 @@ class NotingStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
   std::atomic<bool> fails = false;
-  std::atomic<bool> lists_fail = false;  // of jobs of the mill
+  std::atomic<bool> lists_fail = false;   // of jobs of the mill
+  std::atomic<bool> lists_throw = false;  // likewise
   std::atomic<int> looks_at_optimo = 0;
 
   Result<std::vector<storage::JobRecord>> ListJobs(const storage::JobQuery& query) override {
     if (query.machine == "optimo-1") ++looks_at_optimo;
+    if (lists_throw && query.machine == "mill-1") throw std::runtime_error("no memory");
     if (lists_fail && query.machine == "mill-1")
       return Error{ErrorCode::kCellStoreFailed, "the line broke", {}};
     return store_.ListJobs(query);
@@ -255,16 +258,34 @@ TEST_F(ProductsOfLater, ARecordingThatIsNotWholeIsNotPlayed) {
   EXPECT_TRUE(HasReport(job));
 }
 
-// Where the store could not say it nobody has to ask again: it is looked at a while later.
+// Where the store could not say it, or not keep it, nobody has to ask again: it is looked at a
+// while later.
 TEST_F(ProductsOfLater, WhatCouldNotBeMadeIsMadeLater) {
   again_after_ = std::chrono::milliseconds(50);
-  const std::int64_t job = Over();
-  Record(job);
-  store_.lists_fail = true;
-  LookAtMill();
-  EXPECT_FALSE(HasReport(job));
-  store_.lists_fail = false;
-  EXPECT_TRUE(Eventually([&] { return HasReport(job); }));
+  for (std::atomic<bool> NotingStore::*trouble :
+       {&NotingStore::lists_fail, &NotingStore::lists_throw, &NotingStore::fails}) {
+    const std::int64_t job = Over();
+    Record(job);
+    store_.*trouble = true;
+    LookAtMill();
+    EXPECT_FALSE(HasReport(job));
+    store_.*trouble = false;
+    EXPECT_TRUE(Eventually([&] { return HasReport(job); }));
+  }
+}
+
+// What is under way when the server stops is made later, and nothing more is begun.
+TEST_F(ProductsOfLater, AServerThatStopsAsksForNoFurtherRecording) {
+  const auto link = Joined();
+  Over();  // its host has the recording
+  Record(Over());
+  const std::string played = folder_.File("plays");
+  std::ofstream(program_) << "#!/bin/sh\necho > " << played << "\nexec sleep 600\n";
+  products().Look("mill-1");
+  ASSERT_TRUE(Eventually([&] { return std::filesystem::exists(played); }));
+  products_.reset();
+  const std::vector<v1::HostResponse> all = link->All();
+  EXPECT_EQ(std::ranges::count_if(all, &v1::HostResponse::has_order), 0);
 }
 
 // What its host sends and is no recording is not kept, and not asked for again.

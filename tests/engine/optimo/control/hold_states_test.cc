@@ -132,6 +132,7 @@ TEST(HoldStates, BeforeAReversal) {
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + 100.0 / 50.0 + RampTime(50.0) + kSettle_s, 1e-6);
   EXPECT_NEAR(ran.end.tip.tip.y(), 1100.0, 1e-4);
   EXPECT_EQ(ran.parts.size(), RunText(text).parts.size());
+  EXPECT_NEAR(ran.parts[1].motion.settling_s, kSettle_s, 1e-12);
   EXPECT_EQ(ran.Count("E7316"), 1);  // the reversal is told all the same
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -169,6 +170,27 @@ TEST(RideWays, MotionsThatMayNotBePassedSoFast) {
   motion::PlannedMotion slow_end = Straight(1.0);
   slow_end.speed = motion::SpeedProfile::Steady(1.0, 20.0);
   EXPECT_EQ(count(slow_end), 0U);
+}
+
+// motion.md 6: nor where the axes cannot brake so on a bend: here X cannot.
+TEST(RideWays, TheAxesMustBeAbleToBrakeOnABend) {
+  const Ran ran =
+      RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)\n");
+  const auto bend = std::ranges::find_if(ran.parts, [](const Ran::Part& part) {
+    return part.motion.path.kind() == motion::PathPiece::Kind::kBlend;
+  });
+  ASSERT_NE(bend, ran.parts.end());
+  motion::PlannedMotion passed = Straight(bend->motion.path.length());
+  passed.path = bend->motion.path;
+  passed.head = bend->motion.head;
+  const LeadAlong way(passed, {.speed = 50.0});
+  const std::optional<LeadAlong::End> end = way.EndOnLast(25.0);
+  ASSERT_TRUE(end.has_value());
+  motion::AxisLimits axes = Axes();
+  axes.acceleration.fill(1e6);
+  EXPECT_EQ(way.MotionsTo(*end, axes).size(), 1U);
+  axes.acceleration[0] = 100.0;
+  EXPECT_TRUE(way.MotionsTo(*end, axes).empty());
 }
 
 // motion.md 6: it slows down to what it is faster than when its acceleration is at an end; by then

@@ -101,6 +101,19 @@ TEST(Travel, AHeadThatTurnsLeavesItOnTheWay) {
   EXPECT_NEAR(violations[0].excess, 3550.0 + 300.0 * std::sin(1.0) - 3600.0, 0.1);
 }
 
+// OPT-B.08: bent to either side, the head has its column 300 cos(1) above the tip, inside; upright
+// half way between the two it is 100 mm too high.
+TEST(Travel, AHeadThatBendsLeavesItOnTheWay) {
+  const Ran ran =
+      RunText(kAbsol + "MOVE (1000.,1000.,900.,0.,-1.)\nMOVE (1000.,1500.,900.,0.,1.)\n",
+              {.forecast = true});
+  ASSERT_EQ(ran.violations.size(), 1U);
+  EXPECT_EQ(ran.violations[0].axis, 2);
+  EXPECT_FALSE(ran.violations[0].at_target);
+  EXPECT_EQ(ran.violations[0].place.step, 4);
+  EXPECT_NEAR(ran.violations[0].excess, 100.0, 0.1);
+}
+
 // OPT-B.37: 12.6 is 4e-7 more in the REAL arithmetic of the control. The end of a travel is inside.
 TEST(Travel, TheVeryEndOfItIsInside) {
   const Ran ran = RunText(
@@ -214,6 +227,8 @@ TEST(Travel, AMachineThatStandsOutside) {
   EXPECT_EQ(ran.outcome.detail, "X on the way leaves its travel by 400.000 mm");
   options.forecast = true;
   EXPECT_EQ(RunText(back, options).violations.size(), 1U);
+  EXPECT_EQ(RunText(back, {.parameters = {{"HOME_X", "-1000"}}}).outcome.detail,
+            "X on the way leaves its travel by 400.000 mm");
 }
 
 // OPT-B.08: a MOVE to the place outside where the machine stands anyway is told, though nothing
