@@ -85,7 +85,7 @@ machine::Translation TranslateFor(const machine::MachineFamily& family,
                                       {.file_name = program.file_name(),
                                        .bytes = machine::Bytes::Borrowed(program.content()),
                                        .is_source = program.form() != v1::PROGRAM_FORM_OBJECT},
-                                      {.advice = advice, .source = true});
+                                      {.advice = advice});
 }
 
 // "44.S" is program 44, other names take the place of no program of the machine when there is room.

@@ -301,5 +301,37 @@ TEST_F(HostEntriesTest, AJobWhoseMachineIsOffIsCutOff) {
   EXPECT_EQ(EventsOf(job).back().ended().cycle_time_ns(), 77) << "told once";
 }
 
+// JournalEntry.job, RunOver.job: an end is that of a job where the entry is of the job, and names
+// it.
+TEST_F(HostEntriesTest, AnEndThatIsNobodysEndsNoJob) {
+  const std::int64_t job = SubmitRun();
+  Acquire();
+  Add(job).mutable_run_begun()->set_job(JobName(job));
+  Over(job, v1::Outcome::KIND_COMPLETED);
+  entries.back().clear_job();
+  Over(job, v1::Outcome::KIND_COMPLETED);
+  entries.back().mutable_run_over()->clear_job();
+  Mark(true);
+  const StoredEntries stored = StoreEntries(bed.store(), lease, entries);
+  ASSERT_TRUE(stored.how) << stored.how.error().detail;
+  EXPECT_EQ(stored.count, 4U);
+  EXPECT_EQ(Must(bed.store().GetJob(job)).state, JobState::kRunning);
+}
+
+// OPT-1.15: what a run without a job compiled is kept though no job has ended.
+TEST_F(HostEntriesTest, ExecutablesAreKeptWithoutAJob) {
+  const auto put = Must(bed.store().PutPrograms(
+      "mill-1", {{.slot = 46, .object = "object"}, {.slot = 47, .object = "object"}}, {}));
+  Add().mutable_run_over()->set_run(1);
+  v1::LinkedExecutable& made = *entries.back().add_executables();
+  made.set_slot(47);
+  made.set_object_revision(put[1].revision);
+  made.set_content("made of 47");
+  Mark(true);
+  ASSERT_TRUE(StoreEntries(bed.store(), lease, entries).how);
+  EXPECT_EQ(Must(bed.store().GetProgram("mill-1", 47)).executable.value_or(""), "made of 47");
+  EXPECT_FALSE(Must(bed.store().GetProgram("mill-1", 46)).executable);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -85,6 +85,15 @@ TEST_F(OutlinedTexts, AMachineThatIsNamedIsThere) {
   EXPECT_EQ(CodeOf(tools.Outline(request)), std::nullopt);
 }
 
+// Of a machine whose family nobody knows here that is told, and not that a name says nothing.
+TEST_F(OutlinedTexts, AMachineOfAFamilyThatNobodyKnowsHasNoWords) {
+  Must(bed.store().PutMachine({.id = "odd", .family = "lathe"}, 0));
+  v1::OutlineRequest request;
+  request.mutable_text()->set_machine("machines/odd");
+  request.mutable_text()->mutable_program()->set_content("STOP\n");
+  EXPECT_EQ(CodeOf(tools.Outline(request)), ErrorCode::kCellUnknownFamily);
+}
+
 TEST_F(OutlinedTexts, ARefusalSaysWhy) {
   v1::FixProgramRequest fix;
   fix.mutable_program()->set_file_name("a.O");

@@ -138,6 +138,14 @@ TEST_F(ProgramBookLimits, AnObjectIsKnownByItsFormOrItsName) {
   EXPECT_EQ(source.object_sha256, Must(programs.Get(Name(46))).object_sha256());
 }
 
+// Or by its bytes, where neither says so: then it is kept once.
+TEST_F(ProgramBookLimits, AnObjectIsKnownByItsBytes) {
+  const std::string object = ObjectOf("STOP\n");
+  const v1::Program stored = Stored({.name = Name(45), .file_name = "part", .bytes = object});
+  EXPECT_EQ(stored.object_bytes(), static_cast<std::int64_t>(object.size()));
+  EXPECT_FALSE(stored.has_source_bytes());
+}
+
 TEST_F(ProgramBookLimits, EachFormHasItsFileName) {
   Stored({.name = Name(32), .file_name = "part.S", .bytes = "STOP\n"});
   ASSERT_TRUE(programs.Store({.name = Name(132), .bytes = ExecutableOf(32, "STOP\n")}));

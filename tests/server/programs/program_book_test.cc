@@ -409,6 +409,20 @@ TEST_F(ProgramBookTest, AStoredProgramHasAPath) {
   EXPECT_FALSE(Must(path(0, 46)).header.complete());
 }
 
+// OPT-3.49: START goes on behind a STOP, and what comes there belongs to the picture and the path.
+TEST_F(ProgramBookTest, AStoredProgramIsFollowedBehindItsHalts) {
+  ASSERT_TRUE(Store(45, std::string(kTwoMoves) + "STOP\nDELAY 5.\nSTOP\nDELAY 5.\n"));
+  ProgramViews views(programs);
+  v1::StreamProgramToolpathRequest path;
+  path.set_name(Name(45));
+  const v1::ToolpathHeader header = Must(views.Path(path)).header;
+  EXPECT_TRUE(header.complete());
+  EXPECT_GE(header.duration_ns(), 10'000'000'000);
+  v1::GetProgramPictureRequest picture;
+  picture.set_name(Name(45));
+  EXPECT_TRUE(Must(views.Picture(picture)).complete());
+}
+
 // program.proto UploadContent: with size and digest told before, or without both.
 TEST_F(ProgramBookTest, AContentComesInParts) {
   const std::string digest = bridge::Sha256Hex("content");

@@ -43,6 +43,22 @@ TEST_F(ProgramCounts, AnExecutableOfNoBytesIsThere) {
   const auto got = programs.Get("machines/optimo-1/programs/107");
   ASSERT_TRUE(got) << got.error().detail;
   EXPECT_EQ(got->name(), "machines/optimo-1/programs/107");
+  const auto stored = programs.Store({.name = "machines/optimo-1/programs/107",
+                                      .etag = "none",
+                                      .bytes = ExecutableOf(7, "STOP\n")});
+  ASSERT_FALSE(stored);
+  EXPECT_EQ(stored.error.error.code, ErrorCode::kCellAlreadyExists);
+}
+
+// But nobody stores one: what has no bytes is told by its file, before anything is looked for.
+TEST_F(ProgramCounts, NothingOfNoBytesIsStored) {
+  for (const std::string number : {"7", "107"}) {
+    const auto stored = programs.Store(
+        {.name = "machines/optimo-1/programs/" + number, .file_name = "empty", .bytes = ""});
+    ASSERT_FALSE(stored) << number;
+    EXPECT_EQ(stored.error.error.code, ErrorCode::kCellEmptyProgram) << number;
+    EXPECT_EQ(stored.error.error.detail, "empty") << number;
+  }
 }
 
 TEST_F(ProgramCounts, SpecialProgramsAreThoseOfAFamily) {

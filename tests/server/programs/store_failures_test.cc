@@ -198,12 +198,27 @@ class FullStore final : public ForwardingStore {
 
 TEST_F(ProgramStoreFailures, OfAnUpload) {
   FullStore full(bed.store());
-  ContentUpload told(full, programs);
-  EXPECT_EQ(CodeOf(told.Begin(4, std::string(64, 'a'))), ErrorCode::kCellStoreFailed);
+  // With size and digest told before, it goes to the store as it comes.
+  for (const int size : {1, 4}) {
+    ContentUpload told(full, programs);
+    EXPECT_EQ(CodeOf(told.Begin(size, std::string(64, 'a'))), ErrorCode::kCellStoreFailed) << size;
+  }
   ContentUpload untold(full, programs);
   Must(untold.Begin(-1, {}));
   Must(untold.Add("text"));
   EXPECT_EQ(CodeOf(untold.End()), ErrorCode::kCellStoreFailed);
+}
+
+// A size that was told without a digest is one as well.
+TEST_F(ProgramStoreFailures, AnUploadHasTheSizeThatWasTold) {
+  ContentUpload right(bed.store(), programs);
+  Must(right.Begin(4, {}));
+  Must(right.Add("text"));
+  EXPECT_EQ(CodeOf(right.Add("s")), ErrorCode::kCellChecksum);
+  ContentUpload short_one(bed.store(), programs);
+  Must(short_one.Begin(4, {}));
+  Must(short_one.Add("tex"));
+  EXPECT_EQ(CodeOf(short_one.End()), ErrorCode::kCellChecksum);
 }
 
 // limits.program_bytes: of what is told before, and of what comes.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
 
+#include "engine/families/families.h"
 #include "engine/optimo/language/linker.h"
 #include "server/base/config.h"
 #include "server/programs/memory_tools.h"
@@ -179,6 +181,29 @@ TEST_F(ToolLimits, BothSidesOfAComparisonMayHaveErrors) {
   ASSERT_EQ(diff.error.diagnostics.size(), 2U);
   EXPECT_EQ(diff.error.diagnostics[0].file, "old.S");
   EXPECT_EQ(diff.error.diagnostics[1].file, "new.S");
+}
+
+// DiffProgramsResponse.steps: at most 10,000; those beyond are counted.
+TEST_F(ToolLimits, ChangedStepsThatAreNotListedAreCounted) {
+  const auto compared = [&](int added) {
+    const machine::MachineFamily& family = *families::FindFamily("optimo");
+    std::string text;
+    for (int step = 0; step < added; ++step) text += "VI[2] = 1\n";
+    const machine::CompiledProgram longer = family.tools()->Compile(
+        {.name = "a.S", .bytes = text + "STOP\n"}, machine::Parameters(family.parameters()),
+        {.advice = false, .any_size = true});
+    v1::DiffProgramsRequest request;
+    request.mutable_before()->mutable_text()->set_file_name("old.S");
+    request.mutable_before()->mutable_text()->set_content("STOP\n");
+    request.mutable_after()->mutable_text()->set_file_name("new.O");
+    request.mutable_after()->mutable_text()->set_content(longer.object);
+    const auto diff = tools.Diff(request);
+    if (!diff) throw std::runtime_error(diff.error.error.detail);
+    EXPECT_EQ(diff.value->steps_size(), 10'000) << added;
+    return diff.value->steps_dropped();
+  };
+  EXPECT_EQ(compared(10'000), 0);
+  EXPECT_EQ(compared(10'001), 1);
 }
 
 // DiffProgramsResponse.notes: a program of a slot is called as the file of its object, after its

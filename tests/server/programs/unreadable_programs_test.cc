@@ -54,6 +54,14 @@ TEST_F(UnreadablePrograms, WhatItsFamilyCannotReadIsNotFollowed) {
   EXPECT_NE(Path(name), std::nullopt);
 }
 
+// Nor is a text that is run to be checked.
+TEST_F(UnreadablePrograms, OnSuchAMachineNoTextIsChecked) {
+  machine::MachineNote note;
+  note.family = "no state";
+  Stands("optimo-1", machine::WriteMachineNote(note));
+  EXPECT_NE(CodeOf(Check("STOP\n", true)), std::nullopt);
+}
+
 // FamilyInfo.checked_by_running: of a stream the text tells all, however its machine stands.
 TEST_F(UnreadablePrograms, AStreamIsCheckedWithoutTheStateOfItsMachine) {
   Stands("mill-1", "no state");

@@ -144,16 +144,27 @@ TEST(ProjectArchive, ReadsAFolderThatAPersonPacked) {
   }
 }
 
-// Where the flags of each name stand, of the file itself and of the directory.
-std::vector<std::size_t> FlagsOfNames(const std::string& bytes) {
+// Where a field stands in the header of each file, and in its entry of the directory.
+std::vector<std::size_t> FieldsAt(const std::string& bytes, std::size_t in_header,
+                                  std::size_t in_entry) {
   std::vector<std::size_t> found;
-  for (const auto& [header, behind] :
-       {std::pair<std::string, std::size_t>("PK\3\4", 7), {"PK\1\2", 9}}) {
-    for (std::size_t at = bytes.find(header); at != std::string::npos;
-         at = bytes.find(header, at + 1))
+  for (const auto& [begin, behind] :
+       {std::pair<std::string, std::size_t>("PK\3\4", in_header), {"PK\1\2", in_entry}}) {
+    for (std::size_t at = bytes.find(begin); at != std::string::npos;
+         at = bytes.find(begin, at + 1))
       found.push_back(at + behind);
   }
   return found;
+}
+std::vector<std::size_t> FlagsOfNames(const std::string& bytes) { return FieldsAt(bytes, 7, 9); }
+
+// Any tool for archives unpacks it: what is deflated needs version 2.0 of ZIP, and nothing is so
+// large that it needs a newer one.
+TEST(ProjectArchive, NeedsNoNewTool) {
+  const std::string bytes = *WriteProjectArchive(Some());
+  const std::vector<std::size_t> versions = FieldsAt(bytes, 4, 6);
+  EXPECT_THAT(versions, testing::SizeIs(8));
+  for (const std::size_t at : versions) EXPECT_LE(int{bytes[at]}, 20) << at;
 }
 
 // Names with letters of other alphabets, marked as UTF-8 as every newer tool for archives does it.
@@ -187,6 +198,11 @@ TEST(ProjectArchive, SaysWhatIsWrong) {
   EXPECT_THAT(said(Packed({{"project.json",
                             R"({"programs":[{"slot":1,"source":{"fileName":"gone.S"}}]})"}})),
               HasSubstr("no file gone.S"));
+  // A folder is none.
+  EXPECT_THAT(
+      said(Packed({{"project.json", R"({"programs":[{"slot":1,"source":{"fileName":"7.S/"}}]})"},
+                   {"7.S/", ""}})),
+      HasSubstr("no file 7.S/"));
 }
 
 // That it is damaged is said where nothing more is known of it.
@@ -210,6 +226,7 @@ TEST(ProjectArchive, RefusesADamagedFile) {
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
     const auto read = ReadProjectArchive(damaged);
     EXPECT_TRUE(!read || read->programs(0).source().content() == text) << at;
+    EXPECT_TRUE(read || read.error().code == ErrorCode::kCellInvalidArgument) << at;
     refused += read ? 0 : 1;
   }
   EXPECT_GT(refused, 0);

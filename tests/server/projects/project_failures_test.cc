@@ -6,6 +6,7 @@
 #include "server/projects/project_book.h"
 #include "server/projects/project_transfer.h"
 #include "tests/server/failing_store.h"
+#include "tests/server/forwarding_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -106,13 +107,33 @@ TEST_F(ProjectFailures, OfSchedulesAndOfTheWayBack) {
   EXPECT_EQ(taken(), ErrorCode::kCellInvalidArgument);
 }
 
+// What is told of a project is what the store says that it keeps.
+class GarbledStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord& project,
+                                            storage::Revision expected,
+                                            std::string_view caller) override {
+    auto kept = store_.PutProject(project, expected, caller);
+    if (kept) kept->body = "\xFF\xFF";
+    return kept;
+  }
+};
+
+TEST_F(ProjectFailures, OfAnAnswerThatCannotBeRead) {
+  GarbledStore garbled(bed.store());
+  ProjectBook another(garbled);
+  EXPECT_EQ(Code(another.Create(Creation("lid"), "anna")), ErrorCode::kCellStoreCorrupt);
+}
+
 // Lists have the names of files, of targets as well, and not their bytes.
 TEST_F(ProjectFailures, BytesOfTargetsAreLeftOutOfLists) {
   v1::Project project;
-  for (int slot = 1; slot <= 2; ++slot) {
+  for (int slot = 1; slot <= 3; ++slot) {
     v1::ProjectProgram& program = *project.add_programs();
     program.set_slot(slot);
     program.mutable_source()->set_content("PU;");
+    if (slot == 3) continue;
     v1::MillTarget& target = *program.mutable_milling()->mutable_target();
     if (slot == 1) {
       target.mutable_file()->set_file_name("a.stl");
@@ -130,6 +151,7 @@ TEST_F(ProjectFailures, BytesOfTargetsAreLeftOutOfLists) {
   }
   EXPECT_EQ(bare.programs(0).milling().target().file().file_name(), "a.stl");
   EXPECT_EQ(bare.programs(1).milling().target().inline_program().file_name(), "a.rml");
+  EXPECT_FALSE(bare.programs(2).has_milling());  // as it was
 }
 
 }  // namespace

@@ -160,6 +160,19 @@ TEST_F(ProjectTransferTest, AProjectMayWantInches) {
               HasSubstr("MOVE (50.8, 50.8, -25.4, 0.0, 0.0)"));
 }
 
+// So does one whose name tells no units; what is named as an object is no text to convert.
+TEST_F(ProjectTransferTest, ATextWithoutAnExtensionMayComeInInches) {
+  Put(9, "part", "MOVE (25.4, 50.8, -25.4, 0.0, 0.0)\nSTOP\n");
+  const v1::ProgramText text = Made(Take("inch", {9}, v1::UNITS_INCH)).programs(0).source();
+  EXPECT_EQ(text.file_name(), "part.si");
+  EXPECT_THAT(text.content(), HasSubstr("MOVE (1.0, 2.0, -1.0, 0.0, 0.0)"));
+  Must(bed.store().PutPrograms(
+      "optimo-1",
+      {{.slot = 10, .object = ObjectOf("STOP\n"), .source = "STOP\n", .source_name = "part.O"}},
+      {}));
+  EXPECT_EQ(Refusal(Take("object", {10}, v1::UNITS_INCH)), ErrorCode::kCellInvalidArgument);
+}
+
 TEST_F(ProjectTransferTest, TakesTheStreamsOfAMill) {
   Put(3, "cup.rml", "PA;PU0,0;", "mill-1");
   Made(Take("cup", {}, v1::UNITS_INCH, "mill-1"));  // a stream has its own units

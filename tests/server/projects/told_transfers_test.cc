@@ -144,6 +144,26 @@ TEST_F(ToldTransfers, WhatIsFilledSinceThePreviewIsAChange) {
   EXPECT_EQ(Refusal(false, with_schedule.value->etag()), ErrorCode::kCellEtagMismatch);
 }
 
+// WEB-3.07: and a project that wants slot 11 since, where it wanted schedule 11 before.
+TEST_F(ToldTransfers, ASlotIsNoSchedule) {
+  v1::Project project;
+  Add(project, 12);
+  AddSchedule(project, 11);
+  Create(project);
+  for (const int slot : {11, 12}) Put(slot, "door", kSource, "door.S");
+  PutSchedule(11, "thin", "CW");
+  const auto before = Bring(true);
+  ASSERT_TRUE(before);
+  project.clear_laser_schedules();
+  Add(project, 11);
+  v1::UpdateProjectRequest update;
+  *update.mutable_project() = project;
+  update.mutable_project()->set_name("projects/door");
+  update.mutable_update_mask()->add_paths("*");
+  ASSERT_TRUE(projects.Update(update, "anna"));
+  EXPECT_EQ(Refusal(true, before.value->etag()), ErrorCode::kCellEtagMismatch);
+}
+
 // What is stored between the last look and the transfer is replaced only where nobody asked.
 TEST_F(ToldTransfers, OthersAreNotOverwrittenUnseen) {
   v1::Project project;
@@ -197,6 +217,11 @@ TEST_F(ToldTransfers, StreamsHaveNoProcesses) {
   const auto laser = projects.Create(request, "anna");
   ASSERT_FALSE(laser);
   EXPECT_EQ(laser.error.error.code, ErrorCode::kArgumentCount);
+  // One stream is enough to say so; a name that says nothing may be of a laser.
+  project.mutable_programs()->DeleteSubrange(1, 1);
+  EXPECT_TRUE(projects.Create(request, "anna"));
+  project.mutable_programs(0)->mutable_source()->set_file_name("outline");
+  EXPECT_FALSE(projects.Create(request, "anna"));
 }
 
 // What a cell says of a project that it keeps is not of the next one.

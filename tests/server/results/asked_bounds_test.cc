@@ -120,5 +120,21 @@ TEST_F(AskedBounds, OfPagesOfFindings) {
   EXPECT_EQ(CodeOf(results.Findings(request)), ErrorCode::kCellBadPageToken);
 }
 
+// ListJobFindingsRequest.page_size: 1000 at most, however many are asked for.
+TEST_F(AskedBounds, OfAPageOfFindings) {
+  v1::RunReport report;
+  while (report.diagnostics_size() < 1001) report.add_diagnostics()->set_code("OPT-E7304");
+  const std::int64_t job = bed.SubmitCheck();
+  Must(bed.store().Finish(
+      bed.Lease(),
+      {.artifacts = {{"report", "application/x-protobuf", report.SerializeAsString(), {}}}}));
+  v1::ListJobFindingsRequest request;
+  request.set_name("jobs/" + std::to_string(job));
+  request.set_page_size(2000);
+  const v1::ListJobFindingsResponse page = Must(results.Findings(request));
+  EXPECT_EQ(page.findings_size(), 1000);
+  EXPECT_EQ(page.next_page_token(), "1000");
+}
+
 }  // namespace
 }  // namespace rmlcell::server
