@@ -294,5 +294,30 @@ TEST_F(HostsAsProcesses, OneThatCannotBeIsRefused) {
   EXPECT_FALSE(none.IsEnabled("mill-1"));
 }
 
+// LIVE-3.01: each failed start is waited for longer than the one before.
+TEST_F(HostsAsProcesses, OneThatFailsAgainIsWaitedForLonger) {
+  HostProcesses processes(Options("exec sleep 60"));
+  ASSERT_TRUE(processes.Enable("mill-1"));
+  const auto killed = [this](std::size_t life) {
+    if (!LivesAre(life)) return false;
+    std::filesystem::remove(Kept("mill-1.log"));
+    return ::kill(Lives()[life - 1], SIGKILL) == 0 && IsGone(life - 1);
+  };
+  RestartDelay delay;
+  const milliseconds first = delay.AfterLife({});
+  const milliseconds second = delay.AfterLife({});
+  ASSERT_TRUE(killed(1));
+  ASSERT_TRUE(steady_.GoneRound());
+  EXPECT_FALSE(IsStarted());
+  steady_.Advance(first);
+  ASSERT_TRUE(killed(2));
+  steady_.Advance(first);
+  ASSERT_TRUE(steady_.GoneRound());
+  EXPECT_FALSE(IsStarted());
+  steady_.Advance(second - first);
+  ASSERT_TRUE(LivesAre(3));
+  ::kill(Lives()[2], SIGKILL);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

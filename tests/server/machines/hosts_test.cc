@@ -407,6 +407,7 @@ TEST_F(HostsTest, AStatusAtRestIsAnswered) {
   EXPECT_EQ(answers(), 0);
   Tell(*link, v1::MACHINE_STATE_IDLE);
   EXPECT_EQ(answers(), 1);
+  EXPECT_EQ(link->Newest(v1::HostResponse::kHeartbeat)->heartbeat().number(), 0);  // it has none
 }
 
 // LIVE-3.05: a host whose lease was given away is told so, and nothing of it is stored.

@@ -3,7 +3,9 @@
 #include "server/machines/machine_statuses.h"
 
 #include <atomic>
+#include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -26,6 +28,11 @@ class UncountedStore final : public ForwardingStore {
   Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
     if (fails) return Error{ErrorCode::kCellStoreFailed, "the line broke", {}};
     return store_.UnfinishedJobs();
+  }
+  std::function<void()> changed;  // tells who watches it
+  std::unique_ptr<Subscription> Watch(std::function<void()> told) override {
+    changed = std::move(told);
+    return std::make_unique<Subscription>();
   }
 };
 
@@ -149,6 +156,86 @@ TEST_F(StatusesOfMachines, WhatTheStoreDidNotSayIsAskedAgain) {
   bed.Append(lease, 1);
   EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_RUNNING));
   EXPECT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+}
+
+// Nor does a job stay at its machine that is over, and is counted as such a moment later.
+TEST_F(StatusesOfMachines, AnEndThatIsCountedLateIsSeen) {
+  LateCount store(bed.store());
+  bed.SubmitCheck();
+  const storage::Lease lease = bed.Lease();
+  const MachineStatuses statuses(store, feed, *executor);
+  ASSERT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_RUNNING));
+  store.Hold();
+  v1::Outcome outcome;
+  outcome.set_kind(v1::Outcome::KIND_COMPLETED);
+  Must(bed.store().Finish(lease, {.outcome = OutcomeOf(outcome), .events = {EndedEvent(outcome)}}));
+  ASSERT_TRUE(Eventually([&] { return feed.position() == Must(bed.store().LastPosition()); }));
+  Settle();
+  store.LetGo();
+  EXPECT_TRUE(Becomes("optimo-1", v1::MACHINE_STATE_IDLE));
+}
+
+// Where there was nothing to begin with, the next word of the store is enough, though nothing has
+// changed.
+TEST_F(StatusesOfMachines, ALookThatFailedIsMadeAgain) {
+  UncountedStore store(bed.store());
+  store.fails = true;
+  const MachineStatuses statuses(store, feed, *executor);
+  Settle();
+  EXPECT_EQ(StateOf("mill-1"), std::nullopt);
+  store.fails = false;
+  store.changed();
+  EXPECT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+}
+
+// Whose first look waits until it may go on.
+class HeldStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+  std::promise<void> begun;
+  std::promise<void> goes_on;
+  std::atomic<int> looks = 0;
+  std::function<void()> changed;
+
+  Result<std::vector<storage::MachineJobs>> UnfinishedJobs() override {
+    if (++looks == 1) {
+      begun.set_value();
+      goes_on.get_future().wait();
+    }
+    return store_.UnfinishedJobs();
+  }
+  std::unique_ptr<Subscription> Watch(std::function<void()> told) override {
+    changed = std::move(told);
+    return std::make_unique<Subscription>();
+  }
+};
+
+// One look after the other, however often something changes; whoever ends waits for the last.
+TEST_F(StatusesOfMachines, ALookThatIsUnderWayIsWaitedFor) {
+  HeldStore store(bed.store());
+  auto statuses = std::make_unique<MachineStatuses>(store, feed, *executor);
+  store.begun.get_future().wait();
+  store.changed();
+  std::promise<void> behind;
+  executor->Post([&behind] { behind.set_value(); });
+  behind.get_future().wait();
+  EXPECT_EQ(store.looks, 1);
+  std::future<void> ended = std::async(std::launch::async, [&statuses] { statuses.reset(); });
+  // Whoever does not wait for it is through by then.
+  EXPECT_EQ(ended.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  store.goes_on.set_value();
+  ended.get();
+  EXPECT_EQ(store.looks, 2) << "what changed meanwhile is looked at as well";
+}
+
+TEST_F(StatusesOfMachines, WhoHasEndedHearsNothingOfHosts) {
+  auto statuses = std::make_unique<MachineStatuses>(bed.store(), feed, *executor, &hosts);
+  ASSERT_TRUE(Becomes("mill-1", v1::MACHINE_STATE_IDLE));
+  statuses.reset();
+  const auto link = Joined();
+  hosts.Leave(*link);
+  Settle();
+  EXPECT_EQ(StateOf("mill-1"), v1::MACHINE_STATE_IDLE);
 }
 
 }  // namespace

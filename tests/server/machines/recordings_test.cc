@@ -95,5 +95,13 @@ TEST_F(RecordingsTest, AnyOtherRefusalIsOneOfNow) {
   EXPECT_EQ(CodeOf(Fetched()), ErrorCode::kCellNotLive);
 }
 
+// A machine that no host has is asked for nothing.
+TEST_F(RecordingsTest, WithoutAHostNothingIsFetched) {
+  std::optional<Result<std::string>> fetched;
+  FetchRecording(hosts, "optimo-1", "jobs/8", [&](Result<std::string> one) { fetched = one; });
+  ASSERT_TRUE(fetched);
+  EXPECT_EQ(CodeOf(*fetched), ErrorCode::kCellNotLive);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

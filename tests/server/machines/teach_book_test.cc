@@ -142,7 +142,9 @@ TEST_F(TeachBookTest, WhatWasMadeAndRemovedIsTakenBack) {
   entry.set_act(v1::TeachEntry::ACT_REMOVE);
   entry.set_before("     DELAY 9.0\n");
   Must(book.Add("optimo-1", entry, 1, 0));
-  EXPECT_EQ(Must(book.TakeBack(DownTo(1), "anna")).number(), 3);
+  const v1::TeachEntry undone = Must(book.TakeBack(DownTo(1), "anna"));
+  EXPECT_EQ(undone.number(), 3);
+  EXPECT_EQ(undone.etag_after(), "");
   EXPECT_EQ(Revision(), 0);
 }
 
@@ -170,6 +172,28 @@ TEST_F(TeachBookTest, AChangeBetweenIsNotTakenBack) {
   Must(book.TakeBack(DownTo(2), "anna"));
   EXPECT_EQ(Object(), between);
   EXPECT_EQ(CodeOf(book.TakeBack(DownTo(1), "anna")), ErrorCode::kCellEtagMismatch);
+}
+
+// LIVE-7.09: asked again is what was taken back last: behind anything newer it is asked anew, and
+// is not there any more.
+TEST_F(TeachBookTest, AnOlderUndoIsNoAnswer) {
+  Stored("DELAY 9.0\n");
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 9.0\n", 1, "", "DELAY 1.0");
+  Must(book.TakeBack(DownTo(1), "anna"));
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 2.0\nDELAY 9.0\n", 1, "", "DELAY 2.0");
+  const std::string stands = Object();
+  EXPECT_EQ(CodeOf(book.TakeBack(DownTo(1), "anna")), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Object(), stands);
+}
+
+// An entry of another program is none of this one, however far back it is looked for.
+TEST_F(TeachBookTest, AnEntryOfAnotherProgramIsNotFound) {
+  v1::TeachEntry other;
+  other.mutable_step()->set_program(13);
+  Must(book.Add("optimo-1", other, 0, 1));
+  Stored("DELAY 9.0\n");
+  Teach(v1::TeachEntry::ACT_INSERT, "DELAY 1.0\nDELAY 9.0\n", 1, "", "DELAY 1.0");
+  EXPECT_EQ(CodeOf(book.TakeBack(DownTo(1), "anna")), ErrorCode::kCellNotFound);
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ TEST_F(ToldOnce, WhateverHaltsIsKept) {
     Ask(set);
     EXPECT_EQ(answers.back(), "its host is not heard of");
   }
+  EXPECT_EQ(Count(*first, v1::HostResponse::kOrder), 0) << "nobody is there any more";
   const auto again = Joined(Hello("elsewhere/1", Fence(*first)));
   EXPECT_EQ(Count(*again, v1::HostResponse::kOrder), 4);
 }
@@ -194,6 +195,7 @@ TEST_F(ToldOnce, AnOrderIsAnsweredOnce) {
   Ask(Read);
   EXPECT_THAT(answers, ElementsAre("its host is silent: whether it halts is not known",
                                    "its host is silent"));
+  EXPECT_EQ(Count(*link, v1::HostResponse::kOrder), 1) << "what halts, and nothing else";
   clock.Advance(Hosts::kAnswerPatience + seconds(1));
   hosts.Look();
   EXPECT_EQ(answers.size(), 2U);
@@ -273,6 +275,20 @@ TEST_F(ToldOnce, NothingIsGivenBackBeforeTheFirstWordsAreStored) {
   EXPECT_FALSE(others.IsSettled("mill-1"));
   others.CloseAll();
   Settle();
+}
+
+// LIVE-5.20: nor is it forgotten where the host that comes back had told a single word, and has
+// none to add.
+TEST_F(ToldOnce, OneWordThatIsStoredIsEnoughToGiveBack) {
+  const auto first = Joined();
+  hosts.Receive(*first, RunBegun(Fence(*first), 1));
+  ASSERT_EQ(first->Newest(v1::HostResponse::kEntriesStored)->entries_stored().sequence(), 1);
+  hosts.Leave(*first);
+  const std::int64_t job = RunGivenTo("before/1");
+  const auto again = Joined(Hello("elsewhere/1", Fence(*first)));
+  Beat(*again);
+  EXPECT_TRUE(Eventually(
+      [&] { return Must(bed.store().GetJob(job)).state == storage::JobState::kQueued; }));
 }
 
 }  // namespace
