@@ -120,6 +120,19 @@ class RampsBelow {
   Place worst_{.phase = SpeedProfile::kPhasesMax};
 };
 
+// The fastest ramp from the first of these speeds up to the last; where none leads up there, the
+// least of them all along.
+struct Rise {
+  double from = 0.0;
+  double to = 0.0;
+};
+Rise RiseBelow(std::span<const double> most, double length, const PathLimits& limits) {
+  const double high = RampsBelow(most, length, limits).HighestUpTo(most.back());
+  if (high > most.front()) return {most.front(), high};
+  const double least = *std::ranges::min_element(most);
+  return {least, least};
+}
+
 }  // namespace
 
 // Where x of the way from the speed f is gone the time is at most x / f, so the speed is at
@@ -180,21 +193,12 @@ BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
   std::array<double, kSteps + 1> back;
   std::ranges::reverse_copy(most, back.begin());
   const auto steps_back = kSteps - top;
-  RampsBelow up(most.first(top + 1), step_mm * static_cast<double>(top), limits);
-  RampsBelow down(std::span<const double>(back).first(steps_back + 1),
-                  step_mm * static_cast<double>(steps_back), limits);
-  const double high = std::min(up.HighestUpTo(most[top]), down.HighestUpTo(most[top]));
-  if (high < std::max(most[0], most[kSteps])) return steady;
-  // Where no ramp leads up from an end, all up to the most open place is passed at its speed.
-  const auto too_fast = [high](std::span<const double> part) {
-    return high == part.front() && std::ranges::any_of(part, [high](double here) {
-             return high > here * (1.0 + kLastDigits);
-           });
-  };
-  if (too_fast(most.first(top + 1)) ||
-      too_fast(std::span<const double>(back).first(steps_back + 1)))
-    return steady;
-  return {.count = 2, .start = most[0], .open = high, .middle = most[kSteps]};
+  const Rise up = RiseBelow(most.first(top + 1), step_mm * static_cast<double>(top), limits);
+  const Rise down = RiseBelow(std::span<const double>(back).first(steps_back + 1),
+                              step_mm * static_cast<double>(steps_back), limits);
+  const double high = std::min(up.to, down.to);
+  if (high < std::max(up.from, down.from)) return steady;
+  return {.count = 2, .start = up.from, .open = high, .middle = down.from};
 }
 
 }  // namespace rmlcell::motion

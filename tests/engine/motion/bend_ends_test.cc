@@ -155,6 +155,27 @@ TEST(BendEndPlaces, ADipIsNotPassedAtTheSpeedBeforeIt) {
   EXPECT_EQ(bend.middle, 10.0);
 }
 
+// The dip is passed at its own speed, and so is all of that half but no more: from its other end,
+// in 5 mm, a ramp leads up to that. Turned round it is the same.
+TEST(BendEndPlaces, ADipHoldsUpItsOwnHalfAlone) {
+  const auto at = [](std::size_t k) {
+    if (k == 0) return 15.0;
+    const auto step = static_cast<double>(k);
+    return k <= 12 ? 12.0 + 8.0 * (step - 1.0) / 11.0 : 20.0 - 10.0 * (step - 12.0) / 12.0;
+  };
+  const BendStretches bend = StretchesOf(PlacesOf(at), 10.0, kByJerk);
+  EXPECT_EQ(bend.count, 2U);
+  EXPECT_EQ(bend.start, 12.0);
+  EXPECT_EQ(bend.open, 12.0);
+  EXPECT_EQ(bend.middle, 10.0);
+  const BendStretches turned =
+      StretchesOf(PlacesOf([&at](std::size_t k) { return at(24 - k); }), 10.0, kByJerk);
+  EXPECT_EQ(turned.count, 2U);
+  EXPECT_EQ(turned.start, 10.0);
+  EXPECT_EQ(turned.open, 12.0);
+  EXPECT_EQ(turned.middle, 12.0);
+}
+
 // A jerk of less than a step: the ramp from the start, 10 + j s^2 / 200 at first, is faster than a
 // bend that opens by 0.001 s^2 mm/s, whatever the figures are that it is bounded by.
 TEST(BendEndPlaces, AGentleJerkOnLongSteps) {
