@@ -2,13 +2,16 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <sstream>
+#include <utility>
 
 #include "server/base/config.h"
 #include "server/base/version.h"
@@ -216,6 +219,68 @@ TEST(CommandLine, TheServerTellsItsLifeAndEndsOnASignal) {
   EXPECT_THAT(refused_twice.text, HasSubstr("error [odd "));
 }
 
+// The end of a worker of a server that takes it; the next one that it is told of does not.
+// `joined`: with the process of each, and what becomes of the worker.
+Answer LifeOfAWorker(const std::function<void(pid_t server, pid_t worker,
+                                              const std::future<Answer>& life)>& joined) {
+  const storage::TestDirectory folder;
+  const std::string state = std::filesystem::path(folder.File("cell.db")).parent_path().string();
+  const auto process_behind = [](const std::string& line, const std::string& mark) {
+    const std::size_t at = line.find(mark);
+    return at == std::string::npos ? 0 : std::stoi(line.substr(at + mark.size()));
+  };
+  std::string told;
+  pid_t server = 0;
+  pid_t worker = 0;
+  std::future<Answer> life;
+  Ask("",
+      "--listen.grpc 127.0.0.1:0 --listen.web \"\" --workers.count 0 --workers.join_token word "
+      "--log.format text --state.directory " +
+          state,
+      "rmlcelld", [&](const std::string& line) {
+        told += line;
+        if (line.find(" is ready, store in " + state) != std::string::npos) {
+          server = process_behind(line, "[rmlcelld ");
+          const std::string words =
+              "--name odd --server " + AddressIn(told) + " --server unix:" + state + "/nobody";
+          life = std::async(std::launch::async, [words] {
+            return Ask("RMLCELL_JOIN_TOKEN=word", words, "rmlcell-worker");
+          });
+        }
+        worker = std::max(worker, process_behind(line, "worker odd joined (process "));
+        if (worker > 0 && server > 0) joined(std::exchange(server, 0), worker, life);
+      });
+  if (!life.valid()) return {};
+  if (life.wait_for(storage::kPatience) != std::future_status::ready) ::kill(worker, SIGKILL);
+  return life.get();
+}
+
+// It joins the first server that takes it, and ends in order when it is told to.
+TEST(CommandLine, AWorkerEndsOnASignal) {
+  bool ended = false;
+  const Answer life =
+      LifeOfAWorker([&](pid_t server, pid_t worker, const std::future<Answer>& end) {
+        ::kill(worker, SIGTERM);
+        ended = end.wait_for(storage::kPatience) == std::future_status::ready;
+        ::kill(server, SIGTERM);
+      });
+  EXPECT_TRUE(ended);
+  EXPECT_EQ(life.status, 0) << life.text;
+}
+
+// Whose server is gone has nobody to work for. One that was gone before its welcome came shows
+// nothing: it is tried again.
+TEST(CommandLine, AWorkerEndsWithItsServer) {
+  Answer life;
+  for (int left = 5; left > 0; --left) {
+    life = LifeOfAWorker([](pid_t server, pid_t /*worker*/, const std::future<Answer>& /*end*/) {
+      ::kill(server, SIGKILL);
+    });
+    if (life.status != 69) break;
+  }
+  EXPECT_EQ(life.status, 0) << life.text;
+}
+
 TEST(CommandLine, WhatCannotBeOpenedStopsTheStart) {
   const storage::TestDirectory folder;
   const std::string state = std::filesystem::path(folder.File("cell.db")).parent_path().string();
@@ -234,6 +299,9 @@ TEST(CommandLine, WhatCannotBeOpenedStopsTheStart) {
       Ask("", "--server unix:" + state + "/nobody --name lonely", "rmlcell-worker");
   EXPECT_EQ(nobody.status, 69);
   EXPECT_THAT(nobody.text, HasSubstr("error [lonely "));
+  const Answer nameless =
+      Ask("", "--server unix:" + state + "/nobody --name \"\"", "rmlcell-worker");
+  EXPECT_EQ(nameless.status, 69);
 }
 
 }  // namespace

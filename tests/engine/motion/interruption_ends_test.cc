@@ -2,7 +2,10 @@
 // difference. motion.md section 6
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "engine/motion/kinematics/axes.h"
@@ -76,6 +79,19 @@ TEST(InterruptionEnds, BrakesAtOnceBeforeAStrongerMove) {
   ASSERT_TRUE(stop.complete);
   EXPECT_NEAR(LengthOf(stop.motions), 25.0 * (50.0 / 100.0 + 100.0 / 2000.0), 1e-6);
   EXPECT_LT(stop.motions.front().speed.end().speed, 50.0 - 1e-6);
+}
+
+// Where such a ramp goes beyond what is planned, it says so, though who went on to the stronger
+// move would stand on that.
+TEST(InterruptionEnds, MoreIsToBePlannedBehindAStrongerMove) {
+  const std::vector<PlannedMotion> plan = PlanOf({{100.0, 0.05}, {5.0}, {100.0, 0.9}}, 0.1);
+  ASSERT_EQ(plan.size(), 3U);
+  const double t = plan[0].speed.TimeAt(99.5);
+  EXPECT_FALSE(StopAlong(std::span(plan).first(2), t, kAxesOfAll).complete);
+  const StopOnPath stop = StopAlong(plan, t, kAxesOfAll);
+  ASSERT_TRUE(stop.complete);
+  EXPECT_EQ(stop.index, 2U);
+  EXPECT_NEAR(LengthOf(stop.motions), 25.0 * (50.0 / 100.0 + 100.0 / 2000.0), 1e-6);
 }
 
 // A ramp of the plan runs across the end of a move, those from rest end at each of them: 0.5 mm
@@ -208,6 +224,63 @@ TEST(InterruptionEnds, BrakesMoreGentlyWhereThatIsSooner) {
     }
   }
   EXPECT_GT(gentle, 0);
+}
+
+AxisLimits WithAccelerations(double share) {
+  AxisLimits axes = kAxesOfAll;
+  for (std::size_t i = 0; i < kAxisCount; ++i) axes.acceleration[i] *= share;
+  return axes;
+}
+
+// The gentler ramps are tried in turn: a half, a quarter, an eighth, a sixteenth, and that at the
+// last, whatever the axes can.
+TEST(InterruptionEnds, EachShareIsTriedInTurn) {
+  std::vector<MoveCommand> chain(2);
+  chain[0].path = PathPiece::Line({}, {{100, 0, 0}});
+  chain[1].path = PathPiece::Line({{100, 0, 0}}, {{100, 100, 0}});
+  chain[0].fly = true;
+  chain[0].speed_fraction = chain[1].speed_fraction = 0.1;
+  const std::vector<PlannedMotion> plan = Plan(chain);
+  ASSERT_EQ(plan.size(), 4U);
+  const double half_way = 0.5 * plan[1].path.length();
+  std::set<double> shares;
+  for (double share = 1.0; share > 1e-3; share *= 0.95) {
+    const std::vector<PlannedMotion> rest =
+        RestartAlong(std::span(plan).subspan(1), half_way, WithAccelerations(share));
+    ASSERT_FALSE(rest.empty());
+    ASSERT_GT(rest[0].speed.phase_count(), 0);
+    shares.insert(std::round(rest[0].speed.phase(0).jerk / plan[1].limits.jerk * 1e9) / 1e9);
+  }
+  EXPECT_EQ(shares, (std::set{0.0625, 0.125, 0.25, 0.5, 1.0}));
+}
+
+// What a bend asks of an axis may be 0.1 % more than that can, and no more, at its ends as on the
+// way: X is asked for most where the first half of a bend from X to Y ends, and Y where the second
+// half begins.
+TEST(InterruptionEnds, ATenthOfAPercentMoreIsNoHarm) {
+  std::vector<MoveCommand> chain(2);
+  chain[0].path = PathPiece::Joint({}, {{100, 0, 0}});
+  chain[1].path = PathPiece::Joint({{100, 0, 0}}, {{100, 100, 0}});
+  for (MoveCommand& move : chain) move.kind = MoveCommand::Kind::kPointToPointAxes;
+  chain[0].fly = true;
+  const std::vector<PlannedMotion> plan = Plan(chain);
+  ASSERT_EQ(plan.size(), 4U);
+  for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+    const PlannedMotion& bend = plan[axis + 1];
+    ASSERT_EQ(bend.path.kind(), PathPiece::Kind::kBlend);
+    const double end_s = axis == 0 ? bend.speed.duration_s() : 0.0;
+    const PathState state = bend.speed.At(end_s);
+    const AxisDerivatives q = DerivativesAt(bend.path, bend.head, state.s);
+    const double asked = std::abs(q.second[axis]) * state.speed * state.speed;
+    ASSERT_GT(asked, 100.0);
+    const std::span<const PlannedMotion> alone = std::span(plan).subspan(axis + 1, 1);
+    AxisLimits axes = kAxesOfAll;
+    axes.acceleration.setConstant(1e9);
+    axes.acceleration[axis] = asked / 1.0005;
+    EXPECT_TRUE(AxesCan(alone, axes)) << axis;
+    axes.acceleration[axis] = asked / 1.0015;
+    EXPECT_FALSE(AxesCan(alone, axes)) << axis;
+  }
 }
 
 // What has braked to rest by the time at which its acceleration is zero fits into what that takes:

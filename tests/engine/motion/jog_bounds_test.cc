@@ -156,6 +156,24 @@ TEST(JogBounds, SlowWaysAlongOneAxisEndSoftly) {
   }
 }
 
+// With 2 mm/s2, and no limit on jerk, 1 mm/s takes half a second and 0.25 mm to rest: so far before
+// the end it brakes, though it was asked for again on the way. LIVE-8.02
+TEST(JogBounds, WhatBrakesGentlyBrakesInTime) {
+  JogMachine machine = Gantry();
+  machine.axes.jerk.setConstant(kNoLimit);
+  machine.tip_acceleration_mm_s2 = 2.0;
+  machine.tip_jerk_mm_s3 = kNoLimit;
+  JogDrive drive(machine, JogMode::kTool, {{3597.0, 900.0, -300.0}, 0.0, 0.0});
+  drive.Demand(Of(1.0, 0.0, 0.0, 0.0, 0.0));
+  drive.Advance(1.0);
+  drive.Demand(Of(1.0, 0.0, 0.0, 0.0, 0.0));
+  drive.Advance(3.25);  // 2.75 mm at 3 s
+  EXPECT_NEAR(drive.tip_speed_mm_s(), 0.5, 1e-6);
+  drive.Advance(4.0);
+  EXPECT_TRUE(drive.rests());
+  EXPECT_NEAR(drive.axes().column.x(), 3600.0, 1e-6);
+}
+
 // Along a tool that turns on meanwhile, X, Y and Z come to the end itself.
 TEST(JogBounds, AlongAToolThatTurnsOnItComesToTheEnd) {
   for (const int turned : {3, 4}) {

@@ -153,6 +153,40 @@ TEST(JogLimits, WhatStillTurnsCountsWithTheTipHeld) {
   }
 }
 
+// A turn of A does not move Z: it is as fast as it can be.
+TEST(JogLimits, ATurnOfALeavesZItsSpeed) {
+  JogMachine machine = Trapezoids();
+  machine.axes.speed[2] = 20.0;
+  JogDrive drive(machine, JogMode::kAbsolute, kAslant);
+  drive.Demand(Of(0.0, 0.0, -30.0, 0.05, 0.0));
+  EXPECT_NEAR(SpeedOf(drive, 2), 20.0, 1e-9);
+  EXPECT_NEAR(SpeedOf(drive, 3), 0.05, 1e-12);
+}
+
+// An axis whose key stands, and which is not asked for, keeps nobody back: X goes while a turn that
+// was let go comes to rest.
+TEST(JogLimits, AKeyThatStandsBoundsItsOwnAxisAlone) {
+  JogDrive drive(Trapezoids(), JogMode::kAbsolute, kAslant);
+  drive.Demand(Of(0.0, 0.0, 0.0, 0.5, 0.0));
+  drive.Advance(0.6);
+  drive.KeepTo(Of(100.0, 100.0, 0.0, 1.0, 1.0));
+  drive.Demand(Of(60.0, 0.0, 0.0, 0.0, 0.0));
+  EXPECT_NEAR(SpeedOf(drive, 0), 60.0, 1e-9);
+}
+
+// Along the tool A and B are no faster than they can be, either.
+TEST(JogLimits, AlongTheToolTheHeadTurnsAsFastAsItCan) {
+  const JogMachine machine = Trapezoids();
+  for (const int axis : {3, 4}) {
+    JogDrive drive(machine, JogMode::kTool, kAslant);
+    AxisValues speeds;
+    speeds[axis] = -10.0;
+    drive.Demand(speeds);
+    const double speed = std::sqrt(2.0 * machine.axes.acceleration[axis] * drive.RunsOn(axis));
+    EXPECT_NEAR(speed, machine.axes.speed[axis], 1e-9) << axis;
+  }
+}
+
 // Along the tool: while nothing turns each axis has its part of each direction,
 // R(A, B).
 TEST(JogLimits, AlongTheToolEachAxisHasItsPart) {

@@ -44,6 +44,18 @@ TEST(JogTies, WhatIsAskedBackDoesNotRest) {
   EXPECT_NEAR(drive.tip_speed_mm_s(), 64.0, 1e-9);
 }
 
+// X is asked back and is at rest after 0.07 s, while Y still speeds up, for 0.15 s: each axis is by
+// itself, and Y goes on with its ramp.
+TEST(JogTies, WhatTurnsBackDoesNotDelayAnother) {
+  JogDrive drive(Gantry(), JogMode::kRobot, {{1000.0, 900.0, -300.0}, 0.0, 0.0});
+  drive.Demand(Of(50.0, 0.0, 0.0, 0.0, 0.0));
+  drive.Advance(1.0);
+  drive.Demand(Of(-50.0, 200.0, 0.0, 0.0, 0.0));
+  drive.Advance(1.15);
+  EXPECT_NEAR(drive.axes().column.y(), 915.0, 1e-9);
+  EXPECT_NEAR(drive.tip_speed_mm_s(), std::hypot(50.0, 200.0), 1e-6);
+}
+
 // 192 mm/s2 and 192 mm/s3, from 768 to 192 mm/s: after 1 s of braking 672 mm/s are left, and to end
 // the braking takes 1 s, 608 mm and 96 mm/s more; from there to rest 4 s and 1152 mm. With exactly
 // these 1760 mm it is sped up again, with a millimetre less it goes on braking.

@@ -106,16 +106,21 @@ TEST(PlannerValues, ACornerWaitsForTwiceItsCut) {
   }
 }
 
-// The text of a bend that takes 1 mm of both sides: 1.6457 mm in six stretches.
+// The text of a bend that takes 1 mm of both sides: 1.6457 mm in six stretches. The axes follow
+// what is just all that they have, too.
 TEST(PlannerValues, ABendIsToldInFull) {
-  MachineLimits machine = StandardMachine();
-  machine.tip_jerk_mm_s3 = HUGE_VAL;
-  MotionChain chain(machine, Planner::kWindow);
-  for (const MoveCommand& move :
-       {Straight({}, {{10, 0, 0}}, true, 1.0), Straight({{10, 0, 0}}, {{10, 2, 0}}, false, 1.0)})
-    chain.Append(move, chain.LimitsFor(move), true);
-  EXPECT_THAT(chain.Dump(),
-              testing::HasSubstr(", cut 1.000, curve 1.646 in 6 stretches, passed at "));
+  for (const double across : {0.8, 1.0}) {
+    MachineLimits machine = StandardMachine();
+    machine.tip_jerk_mm_s3 = HUGE_VAL;
+    machine.curve_normal = across;
+    MotionChain chain(machine, Planner::kWindow);
+    for (const MoveCommand& move :
+         {Straight({}, {{10, 0, 0}}, true, 1.0), Straight({{10, 0, 0}}, {{10, 2, 0}}, false, 1.0)})
+      chain.Append(move, chain.LimitsFor(move), true);
+    EXPECT_THAT(chain.Dump(),
+                testing::HasSubstr(", cut 1.000, curve 1.646 in 6 stretches, passed at "))
+        << across;
+  }
 }
 
 // What goes nowhere stands where it says, be it half a micrometre beside the end of the move

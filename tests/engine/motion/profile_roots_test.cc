@@ -52,6 +52,14 @@ TEST(ProfileRoots, APeakUsesUpTheWayExactly) {
   }
 }
 
+// From rest to rest as well, below and above the 10 mm from which on 2000 mm/s2 are reached.
+TEST(ProfileRoots, FromRestToRestThePeakUsesUpTheWay) {
+  for (const double length : {1e-3, 3.0, 9.0, 12.0, 15.0, 19.0, 30.0, 70.0}) {
+    const double peak = SpeedProfile::Span(length, 0.0, 0.0, kLimited).peak_speed();
+    EXPECT_NEAR(2.0 * RampLength(0.0, peak, kLimited), length, 1e-11 * length);
+  }
+}
+
 // The ramp to the speed that is reached takes the way that there is.
 TEST(ProfileRoots, WhatIsReachedTakesTheWholeWay) {
   std::mt19937_64 random(20260302);

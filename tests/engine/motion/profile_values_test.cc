@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/motion/profile/speed_profile.h"
+#include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion::profile_values {
 namespace {
@@ -43,6 +44,36 @@ TEST(ProfileValues, TheSpeedIsBoundedByTheEndsOfAPhase) {
     const double near_peak = std::min(up(150.0, way), 200.0);
     EXPECT_NEAR(AtMost(p, p.phase(2).start.s + way), near_peak, 1e-6) << way;
     EXPECT_NEAR(AtMost(p, 2.0 * peak - p.phase(2).start.s - way), near_peak, 1e-6) << way;
+  }
+}
+
+// A bound is above what it bounds, by room for rounding: in a cruise of 350 mm/s, too.
+TEST(ProfileValues, TheBoundOfACruiseIsNotBelowIt) {
+  const SpeedProfile p = SpeedProfile::Span(400.0, 0.0, 0.0, kUsual);
+  ASSERT_EQ(p.phase_count(), 7);
+  EXPECT_GE(AtMost(p, 200.0), 350.0);
+  EXPECT_LE(AtMost(p, 200.0), 350.0 * (1.0 + 1e-9));
+}
+
+// A profile that takes the place of one with more phases has nothing of those: by the last digits
+// before its end it is next to rest, and its end is passed when it is over.
+TEST(ProfileValues, NothingIsLeftOfMorePhases) {
+  const SpeedProfile seven = SpeedProfile::Span(400.0, 0.0, 0.0, kUsual);
+  ASSERT_EQ(seven.phase_count(), 7);
+  Dice dice(61);
+  for (int round = 0; round < 20'000; ++round) {
+    const double length = dice.Magnitude(1e-2, 100.0);
+    SpeedProfile p = seven;
+    p = SpeedProfile::Span(length, 0.0, 0.0,
+                           {dice.Magnitude(1.0, 500.0), dice.Magnitude(50.0, 5000.0), kWithoutEnd});
+    ASSERT_LE(p.phase_count(), 3);
+    ASSERT_EQ(p.TimeAt(length), p.duration_s()) << round;
+    double t = p.duration_s();
+    for (int step = 0; step < 4; ++step) {
+      t = std::nextafter(t, 0.0);
+      ASSERT_LT(p.At(t).speed, 1e-6) << round;
+      ASSERT_NEAR(p.At(t).s, length, 1e-9 * length) << round;
+    }
   }
 }
 

@@ -106,6 +106,21 @@ TEST(RampSplits, AWeakStretchDoesNotHoldUpTheRest) {
   EXPECT_EQ(LengthsOf(plan), (std::vector{20.0, 0.001, 5.0, 6.0}));
 }
 
+// What comes behind such a way is none of it: 4 s at 5 mm/s make no one ramp over all of it faster.
+TEST(RampSplits, AWayIsComparedWithItsOwnStretchesAlone) {
+  std::vector<RampCell> cells(13, {.length = 1.0, .limits = kStretch});
+  cells[0] = {.length = 1e-3, .limits = {.speed = 100.0, .acceleration = 40.0, .jerk = 800.0}};
+  cells[12].length = 20.0;
+  cells[12].limits.speed = 5.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  ASSERT_EQ(cells[11].end_speed, 5.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  ASSERT_GE(plan.ramps().size(), 3U);
+  EXPECT_EQ(LengthsOf(plan).front(), 0.001);
+  EXPECT_EQ(LengthsOf(plan).back(), 20.0);
+}
+
 // So it is where a bend allows less in its middle than at its ends. Up with 2000 mm/s2 from 50 mm/s
 // at 0.833 mm, one ramp over all has 93.6 mm/s at 2.4 mm, where that stretch begins, 96.8 half way
 // along it and 99.8 at its end.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "engine/motion/profile/ramp_plan.h"
@@ -46,16 +47,19 @@ TEST(RampTies, AsSlowAsItBeginsIsAllowed) {
 // The last or the first of many allows 16 mm/s, where one ramp has 25: it is by
 // itself, and one ramp takes all others.
 TEST(RampTies, ASlowFirstOrLastStretchIsByItself) {
-  std::vector<RampCell> cells(60, {.length = 0.3, .limits = kFast});
-  cells.back().limits.speed = 16.0;
-  TimeByLevelOne(cells, 0.0, 0.0);
-  RampPlan plan;
-  plan.Plan(cells, 0.0);
-  EXPECT_EQ(SplitsOf(plan), (std::vector{17.7, 0.3}));
-  std::ranges::reverse(cells);
-  TimeByLevelOne(cells, 0.0, 0.0);
-  plan.Plan(cells, 0.0);
-  EXPECT_EQ(SplitsOf(plan), (std::vector{0.3, 17.7}));
+  for (const std::size_t count : {60U, 61U}) {
+    const double others = count == 60 ? 17.7 : 18.0;
+    std::vector<RampCell> cells(count, {.length = 0.3, .limits = kFast});
+    cells.back().limits.speed = 16.0;
+    TimeByLevelOne(cells, 0.0, 0.0);
+    RampPlan plan;
+    plan.Plan(cells, 0.0);
+    EXPECT_EQ(SplitsOf(plan), (std::vector{others, 0.3}));
+    std::ranges::reverse(cells);
+    TimeByLevelOne(cells, 0.0, 0.0);
+    plan.Plan(cells, 0.0);
+    EXPECT_EQ(SplitsOf(plan), (std::vector{0.3, others}));
+  }
 }
 
 // A bend among many that is slow at one of its places is by itself as a slow
@@ -114,6 +118,23 @@ TEST(RampTies, WhatIsSlowerThanLevelOneIsNotTaken) {
   EXPECT_DOUBLE_EQ(TimeOf(plan), level_one);
 }
 
+// So it is behind a way that was much faster than its level 1, and before further cells that are
+// none of the plan: each way is compared with its own level 1, and with all of it.
+TEST(RampTies, EachWayIsComparedWithItsOwnLevelOne) {
+  constexpr PathLimits kWeak{.speed = 30.0, .acceleration = 2000.0, .jerk = 4.0};
+  std::vector<RampCell> steps(100, {.length = 1.0, .limits = kFast});
+  TimeByLevelOne(steps, 0.0, 0.0);
+  std::vector<RampCell> cells{{.length = 0.028, .limits = kFast, .end_speed = 0.0},
+                              {.length = 0.1582, .limits = kFast, .end_speed = 10.0},
+                              {.length = 200.0, .limits = kWeak, .end_speed = 30.0},
+                              {.length = 500.0, .limits = kWeak, .end_speed = 30.0}};
+  RampPlan plan;
+  plan.Plan(steps, 0.0);
+  ASSERT_LT(TimeOf(plan) + 0.1, LevelOneTime(steps, 0.0));
+  plan.Plan(std::span(cells).first(3), 0.0);
+  EXPECT_EQ(SplitsOf(plan), (std::vector{0.028, 0.1582, 200.0}));
+}
+
 // A weak stretch makes one ramp over it and a strong one as weak: from 60 mm/s
 // to rest such a ramp is longer than both, so that it is none.
 TEST(RampTies, ARampThatIsTooLongIsNone) {
@@ -168,6 +189,28 @@ TEST(RampTies, ABendIsLookedAtFromItsBegin) {
   EXPECT_EQ(plan.ramps().size(), 2U);
 }
 
+// Braking from 60 mm/s, and up to 60 in reverse: the slower stretch is passed at 44.6 mm/s and
+// less. That it allows a little more is enough, however fast the ramp is elsewhere.
+TEST(RampTies, AStretchIsKeptByTheSpeedsOnIt) {
+  for (const bool brakes : {true, false}) {
+    std::vector<RampCell> cells{{.length = 2.6, .limits = kFast}, {.length = 0.8, .limits = kFast}};
+    cells[0].limits.speed = 60.0;
+    if (!brakes) std::ranges::reverse(cells);
+    const double start = brakes ? 60.0 : 0.0, end = brakes ? 0.0 : 60.0;
+    TimeByLevelOne(cells, start, end);
+    RampPlan plan;
+    plan.Plan(cells, start);
+    ASSERT_EQ(plan.ramps().size(), 1U) << brakes;
+    const double between = SpeedAt(plan.ramps()[0], cells[0].length), time = TimeOf(plan);
+    ASSERT_NEAR(between, 44.6, 0.1) << brakes;
+    cells[brakes ? 1 : 0].limits.speed = 1.01 * between;
+    TimeByLevelOne(cells, start, end);
+    plan.Plan(cells, start);
+    EXPECT_EQ(plan.ramps().size(), 1U) << brakes;
+    EXPECT_NEAR(TimeOf(plan), time, 1e-9) << brakes;
+  }
+}
+
 // One ramp over 1 and 3 mm is at 47 mm/s between them. Where a little less is allowed there, or at
 // a place of a bend on the way, by more than last digits, that is kept.
 TEST(RampTies, LimitsAreKeptButForLastDigits) {
@@ -196,6 +239,37 @@ TEST(RampTies, LimitsAreKeptButForLastDigits) {
   bent[0].most = bend;
   const RampPlan of_bent = plan_of(bent);
   EXPECT_LE(SpeedAt(of_bent.ramps()[of_bent.timing()[0].ramp], 0.75), most * (1.0 + 1e-8));
+}
+
+// A bend is asked at both its ends, too: 40 mm/s where one ramp over 1 and 3 mm has 47. What just
+// allows the speed of that ramp leaves it as it is.
+TEST(RampTies, ABendIsLookedAtFromEndToEnd) {
+  std::vector<RampCell> cells(2, {.limits = kFast});
+  cells[0].length = 1.0;
+  cells[1].length = 3.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  ASSERT_EQ(plan.ramps().size(), 1U);
+  const double time = TimeOf(plan), within = SpeedAt(plan.ramps()[0], 0.75);
+  const auto speed_between = [&plan] {
+    const RampPlan::Timing& first = plan.timing()[0];
+    return SpeedAt(plan.ramps()[first.ramp], first.to);
+  };
+  ASSERT_GT(speed_between(), 46.0);
+  const std::vector<double> slow_begin{40.0, 150.0, 150.0, 150.0, 150.0};
+  const std::vector<double> slow_end{150.0, 150.0, 150.0, 150.0, 40.0};
+  for (const std::size_t bent : {0U, 1U}) {
+    std::vector<RampCell> bend = cells;
+    bend[bent].most = bent == 0 ? slow_end : slow_begin;
+    plan.Plan(bend, 0.0);
+    EXPECT_LE(speed_between(), 40.0 * (1.0 + 1e-8));
+    EXPECT_GT(TimeOf(plan), time + 1e-4);
+  }
+  const std::vector<double> just{150.0, 150.0, 150.0, within, 150.0, 1.0};
+  cells[0].most = std::span(just).first(5);  // what lies behind it is another bend's
+  plan.Plan(cells, 0.0);
+  EXPECT_NEAR(TimeOf(plan), time, 1e-12);
 }
 
 }  // namespace

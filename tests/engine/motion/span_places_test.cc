@@ -223,6 +223,22 @@ TEST(SpanPlaces, APointJustBehindACurveIsItsEnd) {
   }
 }
 
+// One that lies 1e-8 mm behind it is none: that much of its move is left, and nothing is missing
+// between the curve and the next move.
+TEST(SpanPlaces, APointBehindACurveByMoreThanRoundingIsNotItsEnd) {
+  constexpr double kBehind_mm = 1e-8;
+  const std::vector<Line> lines{
+      {kEast * 10.0, 1.0}, {kNorth, 0.5}, {kNorth * (1.0 - 2.0 * kBehind_mm), 0.4}};
+  const std::vector<PlannedMotion> motions = Plan(ChainOf(lines));
+  ExpectSeams(motions);
+  double left = 0.0;
+  for (const PlannedMotion& motion : motions) {
+    if (motion.tag == 1 && motion.path.kind() != PathPiece::Kind::kBlend)
+      left += motion.path.length();
+  }
+  EXPECT_NEAR(left, kBehind_mm, 1e-12);
+}
+
 // A curve of 2.749 mm on both sides, with a point 0.4 mm from the corner on each: its parts belong
 // to the moves as mirror images.
 TEST(SpanPlaces, PartsOfACurveBelongToTheirMoves) {

@@ -361,6 +361,43 @@ TEST_F(CallsThatFail, WhatWasToldBeforeItWasGivenBackIsStored) {
   });
 }
 
+// LIVE-3.25: the next line of a host begins behind what was being stored when it came, and of the
+// line before nothing is stored any more.
+TEST_F(CallsThatFail, TheNextLineBeginsBehindWhatIsBeingStored) {
+  JudgeInTime([this]() -> std::function<void()> {
+    const auto first = std::make_shared<FakeLink>();
+    const auto again = std::make_shared<FakeLink>();
+    EXPECT_TRUE(troubled.Join(first, Hello()));
+    const std::int64_t fence = Fence(*first);
+    const std::size_t before = Told().size();
+    std::future<Status> joined;
+    store.before_append = [&] {
+      troubled.Receive(*first, Entries(fence, 3, true));  // it waits for what is being stored
+      joined = std::async(std::launch::async,
+                          [&] { return troubled.Join(again, Hello("elsewhere/1", fence)); });
+      EXPECT_TRUE(Eventually([&] { return !troubled.IsHeard("mill-1"); }));
+      EXPECT_TRUE(ComesToRest());
+    };
+    troubled.Receive(*first, Entries(fence, 1, true));
+    Settle();
+    EXPECT_TRUE(joined.valid() && joined.get());
+    for (const std::int64_t sequence : {1, 3})
+      troubled.Receive(*again, Entries(fence, sequence, true));
+    EXPECT_TRUE(Eventually([&] {
+      return again->Newest(v1::HostResponse::kEntriesStored)->entries_stored().sequence() == 4;
+    }));
+    Settle();
+    const std::size_t told = Told().size() - before;
+    v1::HostRequest back;
+    back.mutable_hand_back()->set_fence(fence);
+    troubled.Receive(*again, back);
+    troubled.Leave(*again);
+    EXPECT_TRUE(Eventually([&] { return Must(bed.store().MachineLeases()).empty(); }));
+    Settle();  // of a trial that is made again nothing is under way
+    return [told] { EXPECT_EQ(told, 2U); };
+  });
+}
+
 // LIVE-3.05: what has nothing for the store is no reason to find that the lease is lost.
 TEST_F(CallsThatFail, WhatHasNothingForTheStoreIsTaken) {
   const storage::MachineLease lease = TakenBy("hall/1");

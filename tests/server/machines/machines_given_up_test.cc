@@ -160,6 +160,15 @@ TEST_F(MachinesGivenUp, WhoWaitsForAForgottenMachineIsToldSo) {
   EXPECT_THAT(told, testing::ElementsAre("CELL-E9424"));
 }
 
+// hosts.h, Forget: with a fence it is that host, and no other one.
+TEST_F(MachinesGivenUp, AHostIsForgottenByItsFence) {
+  const auto link = Joined();
+  hosts.Forget("mill-1", Fence(*link) + 1);
+  EXPECT_TRUE(hosts.IsHosted("mill-1"));
+  hosts.Forget("mill-1", Fence(*link));
+  EXPECT_FALSE(hosts.IsHosted("mill-1"));
+}
+
 // LIVE-2.10: who watches a machine is told that it is lost, without asking.
 TEST_F(MachinesGivenUp, ALostMachineIsPublished) {
   const auto link = Joined();

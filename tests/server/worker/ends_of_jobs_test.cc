@@ -117,6 +117,20 @@ TEST_F(EndsOfJobs, WhoFollowsAWaySeesItsEnd) {
   EXPECT_THAT(way, testing::Not(IsEmpty()));
 }
 
+// Also where some of it was sent a moment ago: behind where it was told to be last, some of its way
+// comes.
+TEST_F(EndsOfJobs, WhoFollowsAPacedWaySeesItsEnd) {
+  v1::WorkerAssignment assignment = Assignment(
+      v1::JOB_KIND_SIMULATE, "PA;VS10;!VZ10;!PZ-100,200;!MC1;PD3000,0;PU3000,0;", "rml1");
+  assignment.mutable_job()->mutable_simulation()->set_pace(20.0);
+  WorkBehind(assignment, {Order(v1::WorkerControl::KIND_FOLLOW_TOOLPATH)});
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  const auto last = std::find_if(heard_.rbegin(), heard_.rend(), IsPosition);
+  ASSERT_NE(last, heard_.rend());
+  EXPECT_TRUE(std::any_of(heard_.rbegin(), last,
+                          [](const v1::WorkRequest& message) { return message.has_toolpath(); }));
+}
+
 // job_runner.h: everything that can go wrong with a job ends as its outcome. Here the clock of the
 // processor throws behind the first look, with which the work begins.
 TEST_F(EndsOfJobs, AnExceptionFailsTheJobAndNotItsWorker) {

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <new>
+#include <set>
 #include <utility>
 
 #include "engine/simulation/material/height_map.h"
@@ -111,6 +112,33 @@ TEST_F(JobMilling, TheHeightsAreSentAsTheBlockIsMilled) {
     ++told;
   }
   EXPECT_GT(told, 1);
+}
+
+// However much of the block is new at its end: who looks on has seen all of it when that is told.
+TEST_F(JobMilling, AllOfTheBlockIsSeenAtItsEnd) {
+  std::set<std::pair<int, int>> seen;
+  server.heard = [&](const v1::WorkRequest& message) {
+    for (const v1::HeightTile& tile : message.heights().tiles())
+      seen.emplace(tile.row(), tile.column());
+  };
+  v1::WorkerAssignment assignment = Mill(
+      "VS50;!VZ50;!PZ-100,200;!MC1;PU1010,510;PD5010,510;PD5010,2510;PD1010,2510;PD1010,510;"
+      "PU0,0;!MC0;",
+      0.06);
+  MillingOf(assignment).set_height_grid(true);
+  WorkBehind(assignment, {Order(v1::WorkerControl::KIND_FOLLOW_HEIGHTS)});
+  const std::string stored = Artifacts()["height.grid"];
+  const auto head = simulation::ReadHeightGridHead(stored);
+  ASSERT_TRUE(head);
+  simulation::HeightGridTiles grid(*head, 0, std::nullopt);
+  std::set<std::pair<int, int>> touched;
+  for (const simulation::HeightTile& tile :
+       grid.Add(std::string_view(stored).substr(simulation::kHeightGridHeadBytes))) {
+    if (tile.heights.find_first_not_of('\xFF') != std::string::npos)
+      touched.emplace(static_cast<int>(tile.row), static_cast<int>(tile.column));
+  }
+  EXPECT_GT(touched.size(), 32U);
+  EXPECT_EQ(seen, touched);
 }
 
 // 20 mm x 3 mm x 1 mm and two half discs of 1.5 mm, 67.07 mm3 together.
@@ -227,6 +255,27 @@ TEST_F(JobMilling, AFileForWhichThereIsNoMemoryIsOutOfMemory) {
     EXPECT_EQ(MaterialFiles(*field, nullptr, milling, [](std::size_t) { return true; })->size(),
               1U);
   }
+}
+
+// What each of them adds is asked for with all that is there before it, to the byte.
+TEST_F(JobMilling, EachFileCountsBesideThoseBefore) {
+  const auto field = simulation::HeightField::Of(
+      {.x_max = 10.0, .y_max = 10.0, .bottom = -1.0, .top = 0.0, .cell = 0.1});
+  ASSERT_TRUE(field);
+  v1::Milling milling;
+  milling.set_height_map(true);
+  milling.set_height_grid(true);
+  milling.set_stl(true);
+  std::size_t asked = 0;
+  const auto files = MaterialFiles(*field, nullptr, milling, [&asked](std::size_t bytes) {
+    asked = bytes;
+    return true;
+  });
+  ASSERT_TRUE(files);
+  std::size_t together = 0;
+  for (const ProductFile& file : *files) together += file.bytes.size();
+  EXPECT_EQ(files->size(), 3U);
+  EXPECT_EQ(asked, together);
 }
 
 // A block that the server let through and this worker does not take: the job says why.

@@ -206,6 +206,32 @@ TEST_F(JobOutputBounds, AProgramOfManyPartsComesThrough) {
   sender.join();
 }
 
+// Of any length: gRPC by itself takes 4 MiB.
+TEST_F(JobOutputBounds, ALongMessageComesThrough) {
+  Join();
+  v1::WorkResponse message;
+  message.mutable_blob()->set_chunk(std::string(5 * kKibibyte * kKibibyte, 'b'));
+  server.Send(message);
+  const auto heard = line_->Receive(std::chrono::seconds(60));
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->blob().chunk().size(), 5 * kKibibyte * kKibibyte);
+}
+
+// JobLease::Listen: what comes up to an order, however much is to come yet.
+TEST_F(JobOutputBounds, OrdersAreTakenInOneByOne) {
+  Join();
+  const v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "STOP\n");
+  JobLease lease(*line_, assignment, stopping, [] { return 0.0; });
+  const auto kinds = {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_RESUME};
+  for (const auto kind : kinds) server.Send(Order(kind));
+  for (const auto kind : kinds) {
+    lease.Listen(std::chrono::minutes(1));
+    const std::vector<v1::WorkerControl> taken = lease.TakeOrders();
+    ASSERT_EQ(taken.size(), 1U);
+    EXPECT_EQ(taken.front().kind(), kind);
+  }
+}
+
 // Processor time is that of the thread that asks, in seconds.
 TEST(ProcessorTimeOfAJob, IsThatOfItsThread) {
   const auto by_hand = [] {
@@ -234,19 +260,24 @@ TEST_F(JobOutputBounds, ARunWithoutPaceTellsWhereItIs) {
     EXPECT_GT(message.heartbeat().progress().virtual_time_ns(), 0);
     shares += message.heartbeat().progress().has_progress() ? 1 : 0;
   };
+  const auto begun = std::chrono::steady_clock::now();
   Work(Assignment(v1::JOB_KIND_SIMULATE, source, "rml1"));
+  const auto took = std::chrono::steady_clock::now() - begun;
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(shares, positions);
+  EXPECT_LE(positions, took / std::chrono::milliseconds(50) + 2) << "20 a second at most";
 }
 
-// One that is told to go as the machine would tells what part of it is done when it is known how
-// long it takes. It lasts for minutes: the cancel comes before its end, however late that is.
+// One that is told to go as the machine would tells where it is at once, and what part of it is
+// done when it is known how long it takes. It lasts for minutes: the cancel comes before its end,
+// however late that is.
 TEST_F(JobOutputBounds, ARunWithThePaceOfItsMachineTellsWhatIsKnown) {
   std::vector<v1::JobProgress> positions;
   server.heard = [&](const v1::WorkRequest& message) {
     if (!IsPosition(message)) return;
     positions.push_back(message.heartbeat().progress());
-    if (positions.size() == 3) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+    if (positions.size() < 3 || positions.back().planned_time_ns() == 0) return;
+    server.Send(Order(v1::WorkerControl::KIND_CANCEL));
   };
   std::string source = "PA;PA;VS8;!MC1;";
   for (int i = 0; i < 1'000; ++i) source += "PU1000,0;PU0,0;";
@@ -254,6 +285,8 @@ TEST_F(JobOutputBounds, ARunWithThePaceOfItsMachineTellsWhatIsKnown) {
   assignment.mutable_job()->mutable_simulation()->set_pace(1.0);
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+  ASSERT_FALSE(positions.empty());
+  EXPECT_EQ(positions.front().virtual_time_ns(), 0);
   for (const v1::JobProgress& one : positions)
     EXPECT_EQ(one.has_progress(), one.planned_time_ns() > 0);
 }

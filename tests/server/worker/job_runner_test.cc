@@ -81,6 +81,15 @@ TEST_F(JobRunnerTest, IsToldWhyItMayNotJoin) {
   }
 }
 
+// Who is answered and not welcome has not joined.
+TEST_F(JobRunnerTest, WhoIsNotWelcomeHasNotJoined) {
+  server.welcomes = false;
+  const auto joined =
+      ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+  ASSERT_FALSE(joined);
+  EXPECT_EQ(joined.error().code, ErrorCode::kCellUnavailable);
+}
+
 // Where nobody listens: that is no refusal of a server.
 TEST_F(JobRunnerTest, WhereNobodyListensNobodyIsJoined) {
   const std::string address = "unix:" + testing::TempDir() + "/no-server-listens";

@@ -30,5 +30,20 @@ TEST(LeastBudget, OfOneByteIsInForce) {
   EXPECT_FALSE(MemoryBudget::exceeded());
 }
 
+// A byte is a byte: one can be had, and a second one when the first is given back.
+TEST(LeastBudget, OfOneByteIsUsedUpByOne) {
+  bool refused = false;
+  const MemoryBudget budget(1);
+  void* first = ::operator new(1);
+  try {
+    ::operator delete(::operator new(1));
+  } catch (const std::bad_alloc&) {
+    refused = true;
+  }
+  ::operator delete(first);
+  ::operator delete(::operator new(1));
+  EXPECT_TRUE(refused);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -1,6 +1,7 @@
 #include "server/worker/memory_budget.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <memory>
 #include <new>
@@ -69,6 +70,33 @@ TEST(MemoryBudget, IsThatOfItsThread) {
 TEST(MemoryBudget, WithoutOneNothingIsCounted) {
   Free(Allocate(64 << 20));
   EXPECT_FALSE(MemoryBudget::exceeded());
+}
+
+// In whichever form it is taken and given back.
+TEST(MemoryBudget, EachFormGivesBackWhatItTook) {
+  constexpr std::size_t kSize = 900'000;
+  constexpr auto kPage = std::align_val_t(4096);
+  const std::vector<void (*)()> forms = {
+      [] { ::operator delete(::operator new(kSize), kSize); },
+      [] { ::operator delete[](::operator new[](kSize)); },
+      [] { ::operator delete[](::operator new[](kSize), kSize); },
+      [] { ::operator delete[](::operator new[](kSize, kPage), kPage); },
+      [] { ::operator delete(::operator new(kSize, kPage), kSize, kPage); },
+      [] { ::operator delete[](::operator new[](kSize, kPage), kSize, kPage); }};
+  for (const auto form : forms) {
+    const MemoryBudget budget(1 << 20);
+    for (int time = 0; time < 3; ++time) form();
+    EXPECT_FALSE(MemoryBudget::exceeded());
+  }
+}
+
+// What is given back is the computer's again.
+TEST(MemoryBudget, NothingStaysOfWhatIsGivenBack) {
+  const auto held = [] { return ::mallinfo2().hblkhd + ::mallinfo2().uordblks; };
+  Free(Allocate(64 << 20));
+  const std::size_t before = held();
+  Free(Allocate(64 << 20));
+  EXPECT_LT(held(), before + (32 << 20));
 }
 
 }  // namespace

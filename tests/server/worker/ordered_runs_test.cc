@@ -116,6 +116,26 @@ TEST_F(OrderedRuns, AStopHaltsUntilSomebodyLetsItGoOn) {
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
 }
 
+// A mill has both keys: each halts as itself.
+TEST_F(OrderedRuns, AHoldIsNoStop) {
+  for (const auto& [order, reason] :
+       {std::pair{v1::WorkerControl::KIND_HOLD, v1::HOLD_REASON_HOLD},
+        std::pair{v1::WorkerControl::KIND_STOP, v1::HOLD_REASON_STOP}}) {
+    std::vector<v1::HoldReason> reasons;
+    server.heard = [&](const v1::WorkRequest& message) {
+      for (const v1::JobEvent& event : message.events().events()) {
+        if (!event.has_halted()) continue;
+        reasons.push_back(event.halted().reason());
+        server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+      }
+    };
+    WorkBehind(Paced("PA;PA;VS8;!MC1;PU1000,1000;PU3000,3000;PU0,0;", 20.0, "rml1"),
+               {Order(order)});
+    EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+    EXPECT_THAT(reasons, ElementsAre(reason));
+  }
+}
+
 // What a STOP has halted does not go on by itself.
 TEST_F(OrderedRuns, AStopLetsNothingGoOn) {
   server.heard = [&](const v1::WorkRequest& message) {
@@ -248,6 +268,10 @@ TEST_F(OrderedRuns, AJobThatIsLostIsNotEvenRefused) {
   for (int i = 0; i < 1'001; ++i)  // one more than a job may ask for
     assignment.mutable_job()->mutable_simulation()->add_variables("VI[" + std::to_string(i) + "]");
   EXPECT_TRUE(Work(assignment, {Release()}));
+  EXPECT_FALSE(Finished());
+  assignment.mutable_programs(0)->set_content("STOP\n");
+  assignment.mutable_programs(0)->set_size(5);
+  EXPECT_TRUE(WorkBehind(assignment, {Release()}));  // nor when the rest of it comes
   EXPECT_FALSE(Finished());
 }
 

@@ -159,6 +159,17 @@ TEST_F(RefusedRecordings, AProductThatCannotBeWrittenIsNamed) {
   }
 }
 
+// Nor is one written for which there is no room.
+TEST_F(RefusedRecordings, AProductWithoutRoomIsNamed) {
+  for (const char* name : {"toolpath", "report", "picture.svg"}) {
+    const std::string file = folder_ + "/" + name;
+    std::filesystem::remove_all(file);
+    std::filesystem::create_symlink("/dev/full", file);
+    EXPECT_EQ(Refused(ThereAndBack()), CodeText(ErrorCode::kCellFileUnwritable) + " " + file);
+    std::filesystem::remove_all(file);
+  }
+}
+
 // LIVE-5.08: a mill has no number for it; its run has failed all the same.
 TEST_F(RefusedRecordings, ARunThatAnEmergencyStopEndedHasFailed) {
   const Status made = Make(With(bridge::AppliedOf(machine::EmergencyStop{})));

@@ -178,5 +178,16 @@ TEST_F(ReplayedProducts, NameAllThatTheRunBeganWith) {
   EXPECT_EQ(Report().inputs_hash(), simulation::FingerprintOf(family, setup));
 }
 
+// Nor is another run that was begun later.
+TEST_F(ReplayedProducts, AreOfTheFirstRunAlone) {
+  recording::Recording recording = Run(kThereAndBack);
+  ASSERT_TRUE(Make(recording));
+  const std::string hash = Report().inputs_hash();
+  recording.entries[3].mutable_applied()->mutable_input()->mutable_start()->set_program(6);
+  const Status made = Make(recording);
+  ASSERT_TRUE(made) << made.error().detail;
+  EXPECT_EQ(Report().inputs_hash(), hash);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

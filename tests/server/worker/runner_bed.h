@@ -44,6 +44,7 @@ class FakeServer final : public v1::WorkerService::Service {
 
   // Set before a worker joins.
   grpc::Status refusal = grpc::Status::OK;
+  bool welcomes = true;  // else it says something else, and no more
   std::int64_t lease_ms = 60'000;
   int window = 256;
   std::function<void(const v1::WorkRequest&)> heard;  // what to do on a message; may call Send
@@ -67,6 +68,10 @@ class FakeServer final : public v1::WorkerService::Service {
                     grpc::ServerReaderWriter<v1::WorkResponse, v1::WorkRequest>* stream) override {
     v1::WorkRequest message;
     if (!stream->Read(&message) || !refusal.ok()) return refusal;
+    if (!welcomes) {
+      stream->Write(v1::WorkResponse());
+      return grpc::Status::OK;
+    }
     {
       const std::lock_guard lock(mutex_);
       context_ = context;
